@@ -1,0 +1,70 @@
+# `make help` lists the targets. Works with GNU make 4 and any POSIX sh.
+
+PYTHON ?= python3
+JOBS ?= auto
+ARGS ?=
+
+UV_VERSION := 0.13.9
+STAMP := .venv/.installed
+PIP := .venv/bin/python -m pip --disable-pip-version-check --quiet
+# By file: tests of one file share the laws they compile, and two workers would each compile them on a cold cache.
+PYTEST := .venv/bin/python -m pytest -n $(JOBS) --dist loadfile
+
+# An environment that was moved, copied or left half installed still runs, but not this working tree: make it anew.
+INTACT := $(shell [ -x .venv/bin/python ] && [ ! -e .venv/.incomplete ] \
+	&& grep -qsF "$$(pwd -P)/.venv/" .venv/bin/pip && echo yes)
+
+.PHONY: help run test check quick bench lock clean FORCE
+.DELETE_ON_ERROR:
+.SUFFIXES:
+
+help: ## list the targets (default)
+	@echo 'armland: make TARGET [PYTHON=python3.12] [ARGS="..."]'
+	@awk -F ': .*## ' '/^[a-z]+:.*## / { printf "  %-7s %s\n", $$1, $$2 }' Makefile
+
+run: $(STAMP) ## run the paper's experiments; ARGS is passed to `armland paper`
+	@.venv/bin/armland paper $(ARGS)
+
+test: $(STAMP) ## run every check: ruff, mypy, pytest; ARGS is passed to pytest
+	.venv/bin/ruff check .
+	.venv/bin/ruff format --check .
+	.venv/bin/mypy
+	$(PYTEST) $(ARGS)
+
+check: test ## the same as test
+
+quick: $(STAMP) ## run the tests that take seconds; ARGS is passed to pytest
+	$(PYTEST) -m 'not slow' $(ARGS)
+
+bench: $(STAMP) ## run the benchmarks
+	@for file in benchmarks/*.py; do \
+		if [ -e "$$file" ]; then echo "== $$file"; .venv/bin/python "$$file" $(ARGS) || exit 1; fi; \
+	done
+
+lock: ## pin the dependencies anew in requirements.lock; ARGS=--upgrade takes the newest
+	@.venv/tools/bin/python -m pip --version >/dev/null 2>&1 || "$(PYTHON)" -m venv --clear .venv/tools
+	@.venv/tools/bin/python -m pip --disable-pip-version-check --quiet install 'uv==$(UV_VERSION)'
+	@.venv/tools/bin/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
+		--only-binary :all: --generate-hashes --no-emit-index-url --no-emit-find-links \
+		--custom-compile-command 'make lock' --extra dev --output-file requirements.lock $(ARGS) pyproject.toml
+
+clean: ## remove the environment, caches and build products; results in out/ stay
+	rm -rf .venv build .pytest_cache .mypy_cache .ruff_cache .hypothesis src/*.egg-info
+	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(STAMP): requirements.lock pyproject.toml $(if $(INTACT),,FORCE)
+	@[ -n '$(INTACT)' ] || { \
+		version=$$("$(PYTHON)" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null) \
+			|| version='not to be found'; \
+		"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
+			echo "armland needs Python 3.11 or newer; $(PYTHON) is $$version." \
+				"Name another one: make PYTHON=python3.12 ..." >&2; exit 1; }; \
+		"$(PYTHON)" -c 'import ensurepip, venv' 2>/dev/null || { \
+			echo "$(PYTHON) ($$version) has no venv module." \
+				"On Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; }; \
+		echo 'Creating .venv'; "$(PYTHON)" -m venv --clear .venv; }
+	@rm -f $@ && : > .venv/.incomplete
+	@echo 'Installing what requirements.lock pins into .venv (the first time takes about a minute)'
+	@$(PIP) install --require-hashes --only-binary :all: -r requirements.lock
+	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@rm .venv/.incomplete && : > $@

@@ -1,0 +1,50 @@
+"""Desired path of the pivot: point-to-point moves with rests, septic in time, so that r_d(t) is C³ throughout."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from armland.rotations import Array
+from armland.scenario import Trajectory
+
+SEPTIC = Polynomial([0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0])
+"""The polynomial of lowest degree from 0 to 1 with zero velocity, acceleration and jerk at both ends."""
+
+
+class Leg(NamedTuple):
+    """One move in time: it starts at `start_s`, arrives at `arrive_s`, and rests until `end_s`."""
+
+    start_s: float
+    arrive_s: float
+    end_s: float
+    origin: Array  # (3,) m, world
+    target: Array  # (3,) m, world
+
+
+def legs(trajectory: Trajectory, start: Array, settle_s: float, tail_s: float) -> list[Leg]:
+    """The moves of a trajectory from `start` (3,) m; the first begins after `settle_s`, the last rests `tail_s` longer."""
+    t, here, out = settle_s, np.array(start, dtype=float), []
+    for i, move in enumerate(trajectory.moves):
+        target = np.asarray(start) + move.to_m
+        rest = move.rest_s + (tail_s if i == len(trajectory.moves) - 1 else 0.0)
+        arrive = t + move.duration_s
+        out.append(Leg(t, arrive, arrive + rest, here, target))
+        t, here = arrive + rest, target
+    return out
+
+
+def sample(path: list[Leg], rate_hz: int) -> Array:
+    """r_d, ṙ_d and r̈_d at each tick, (ticks, 9), m, m/s, m/s², world. Before the first leg it rests at its origin."""
+    times = np.arange(round(path[-1].end_s * rate_hz)) / rate_hz
+    out = np.zeros((len(times), 9))
+    out[:, :3] = path[0].origin
+    for leg in path:
+        duration = leg.arrive_s - leg.start_s
+        moving = (times >= leg.start_s) & (times < leg.arrive_s)
+        u = (times[moving] - leg.start_s) / duration
+        for k in range(3):
+            out[moving, 3 * k : 3 * k + 3] = np.outer(SEPTIC.deriv(k)(u), leg.target - leg.origin) / duration**k
+        out[moving, :3] += leg.origin
+        out[times >= leg.arrive_s, :3] = leg.target
+    return out

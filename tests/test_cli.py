@@ -1,0 +1,164 @@
+"""The command line: exit codes, one readable message, nothing half-written."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from armland.config import SCENARIOS
+
+PAPER = (SCENARIOS / "paper.toml").read_text(encoding="utf-8")
+CALIBRATION = (SCENARIOS / "calibration.toml").read_text(encoding="utf-8")
+
+
+def armland(*args: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    call = [sys.executable, "-c", "from armland.cli import main; main()", *args]
+    return subprocess.run(call, capture_output=True, text=True, cwd=cwd, timeout=300)
+
+
+def test_paper_json_is_alone_on_standard_output(tmp_path: Path) -> None:
+    done = armland("paper", "--json", "--no-figures", "--out", str(tmp_path / "out"))
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    assert set(result) == {"experiments", "published", "verdicts", "run"}
+    assert set(result["experiments"]["E1"]) == {
+        "attitude_max_deg",
+        "attitude_rms_deg",
+        "position_max_m",
+        "position_rms_m",
+        "overshoot_m",
+        "delta_tau_max_nm",
+        "hinge_force_max_n",
+    }
+    assert set(result["verdicts"][0]) == {"claim", "value", "bound", "holds"}
+    assert set(result["run"]) == {"ticks", "simulated_s", "wall_s", "real_time_factor"}
+    assert json.loads((tmp_path / "out" / "result.json").read_text()) == result
+    assert sorted(p.name for p in (tmp_path / "out").glob("*.mcap")) == ["E1.mcap", "E2.mcap", "E3.mcap"]
+
+
+def test_a_failed_verdict_is_exit_code_1(tmp_path: Path) -> None:
+    (tmp_path / "weak.toml").write_text(PAPER.replace("extra_torque = true", "extra_torque = false"))
+    (tmp_path / "calibration.toml").write_text(CALIBRATION)
+    done = armland("paper", "--scenario", "weak.toml", "--no-figures", "--json", cwd=tmp_path)
+    assert done.returncode == 1, done.stderr
+    assert not all(v["holds"] for v in json.loads(done.stdout)["verdicts"])
+
+
+URDF = """<robot name="r"><link name="base"/>
+<link name="l1"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="j1" type="revolute"><parent link="base"/><child link="l1"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="9" velocity="1"/></joint></robot>"""
+
+BAD = {
+    "unknown key": ("\n[sensors]\nnoise = 1.0\n", {}, [], ["sensors.noise", "unknown key", "force_n"]),
+    "wrong unit type": ('\n[run]\nsettle_s = "1 s"\n', {}, [], ["run.settle_s", "valid number"]),
+    "NaN gain": ("\n[control]\nk3 = nan\n", {}, [], ["control.k3"]),
+    "negative gain": (
+        "\n[control]\nk1 = [1.0, 1.0, 1.0, 30.0, -30.0, 30.0]\n",
+        {},
+        [],
+        ["control.k1.4", "greater than 0"],
+    ),
+    "inertia not positive definite": (
+        "",
+        {"[uav]\n": "[uav]\ninertia_kgm2 = [[0.006, 0.0, 0.0], [0.0, -0.007, 0.0], [0.0, 0.0, 0.012]]\n"},
+        [],
+        ["uav.inertia_kgm2", "positive definite"],
+    ),
+    "rate that does not divide": (
+        "\n[link]\nrate_hz = 300\n",
+        {},
+        [],
+        ["link.rate_hz = 300", "does not divide", "250"],
+    ),
+    "trajectory out of reach": (
+        "",
+        {"to_m = [0.10, 0.0, 0.0]": "to_m = [0.60, 0.0, 0.0]"},
+        [],
+        ["out of reach by", "t = "],
+    ),
+    "start out of reach": (
+        "",
+        {"start_m = [0.58, 0.0, 0.74]": "start_m = [2.0, 0.0, 0.74]"},
+        [],
+        ["misses it by", "mm"],
+    ),
+    "calibrated value outside its range": (
+        "",
+        {},
+        ["value = 2.35", "value = 9.0"],
+        ["control.thrust_n", "outside", "4.7"],
+    ),
+    "not TOML": ("\n[[[\n", {}, [], ["not valid TOML"]),
+    "arm file missing": ("", {'file = "lwr4.xml"': 'file = "nowhere.urdf"'}, [], ["nowhere.urdf", "does not exist"]),
+    "arm without the frame": ("", {'ee = "flange"': 'ee = "gripper"'}, [], ["no frame 'gripper'", "flange"]),
+    "unknown elbow": ("", {'elbow_joint = "A3"': 'elbow_joint = "B3"'}, [], ["no joint 'B3'", "A3"]),
+    "delay too long": ("", {}, ["value = 25.0", "value = 2500.0"], ["link.uplink_delay_ms", "outside"]),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_scenario_is_one_message_exit_code_2_and_nothing_written(name: str, tmp_path: Path) -> None:
+    tail, changes, calibration, words = BAD[name]
+    text = PAPER
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    (tmp_path / "bad.toml").write_text(text + tail)
+    (tmp_path / "calibration.toml").write_text(CALIBRATION.replace(*calibration) if calibration else CALIBRATION)
+    done = armland("paper", "--scenario", "bad.toml", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 2, (done.stdout, done.stderr)
+    for word in words:
+        assert word in done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stderr.startswith("armland: ")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (("--scenario", "nowhere.toml"), ["nowhere.toml", "does not exist", "paper"]),
+        (("--arm", "short.urdf", "--ee", "l1"), ["1 joints", "at least 6"]),
+        (("--arm", "short.urdf", "--ee", "tool0"), ["no frame 'tool0'", "l1"]),
+        (("--arm", "torn.urdf", "--ee", "l1"), ["not well-formed XML"]),
+        (("--seed", "-1"), ["run.seed"]),
+    ],
+)
+def test_bad_option_is_one_message_and_exit_code_2(args: tuple[str, ...], words: list[str], tmp_path: Path) -> None:
+    (tmp_path / "short.urdf").write_text(URDF)
+    (tmp_path / "torn.urdf").write_text(URDF[:-20])
+    done = armland("paper", *args, cwd=tmp_path)
+    assert done.returncode == 2, (done.stdout, done.stderr)
+    for word in words:
+        assert word in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_out_that_cannot_be_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    done = armland("paper", "--out", str(tmp_path / "file" / "sub"))
+    assert done.returncode == 2
+    assert "--out" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_schema_is_json_and_help_has_examples() -> None:
+    done = armland("schema")
+    assert done.returncode == 0
+    assert "trajectory" in json.loads(done.stdout)["properties"]
+    help_text = armland("paper", "--help").stdout
+    assert "Examples" in help_text
+    assert "--arm" in help_text
+
+
+@pytest.mark.parametrize("arm", ["six_axis.urdf", "seven_axis.urdf"])
+def test_another_arm_takes_the_lwr_s_place(arm: str, tmp_path: Path) -> None:
+    file = Path(__file__).parents[1] / "examples" / arm
+    done = armland("paper", "--arm", str(file), "--ee", "tool0", "--json", "--no-figures", "--out", str(tmp_path))
+    assert done.returncode in (0, 1), done.stderr
+    experiments = json.loads(done.stdout)["experiments"]
+    assert max(experiments["E3"]["position_max_m"]) < 0.05
