@@ -21,7 +21,7 @@ LAYERS = (
     ("view",),
     ("cli",),
 )
-FOUNDATION = {"__init__", "records", "rotations", "scenario", "config", "errors"}
+FOUNDATION = {"__init__", "compiled", "records", "rotations", "scenario", "config", "errors"}
 LAYER_OF = {part: depth for depth, parts in enumerate(LAYERS) for part in parts}
 FORBIDDEN_NAMES = {"utils", "helpers", "common", "manager", "base"}
 MAX_LINES = 300

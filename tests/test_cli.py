@@ -39,7 +39,7 @@ def test_paper_json_is_alone_on_standard_output(tmp_path: Path) -> None:
 
 
 def test_a_failed_verdict_is_exit_code_1(tmp_path: Path) -> None:
-    (tmp_path / "weak.toml").write_text(PAPER.replace("extra_torque = true", "extra_torque = false"))
+    (tmp_path / "weak.toml").write_text(PAPER.replace('extra_torque = "full"', 'extra_torque = "none"'))
     (tmp_path / "calibration.toml").write_text(CALIBRATION)
     done = armland("paper", "--scenario", "weak.toml", "--no-figures", "--json", cwd=tmp_path)
     assert done.returncode == 1, done.stderr
@@ -113,7 +113,7 @@ def test_bad_scenario_is_one_message_exit_code_2_and_nothing_written(name: str, 
     for word in words:
         assert word in done.stderr
     assert "Traceback" not in done.stderr
-    assert done.stderr.startswith("armland: ")
+    assert sum(line.startswith("armland: ") for line in done.stderr.splitlines()) == 1
     assert not (tmp_path / "out").exists()
 
 
@@ -162,3 +162,34 @@ def test_another_arm_takes_the_lwr_s_place(arm: str, tmp_path: Path) -> None:
     assert done.returncode in (0, 1), done.stderr
     experiments = json.loads(done.stdout)["experiments"]
     assert max(experiments["E3"]["position_max_m"]) < 0.05
+
+
+def test_gains_by_rule_are_printed_with_their_margins() -> None:
+    done = armland("gains", "--json")
+    assert done.returncode == 0, done.stderr
+    data = json.loads(done.stdout)
+    assert set(data) == {"gains", "onboard", "margins"}
+    assert set(data["margins"]) == {"position", "roll", "pitch", "yaw"}
+    assert 0.0 < data["margins"]["roll"]["delay"] < 0.1
+    assert "Margins" in armland("gains").stdout
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (
+            ("--attitude", "39", "--over-link", "--delay-ms", "30"),
+            ["39 rad/s is not feasible", "keep the feedback on board"],
+        ),
+        (("--attitude", "60"), ["not feasible", "feasible at this delay are"]),
+        (("--attitude", "-3"), ["attitude bandwidth is -3.0", "above 0"]),
+        (("--position-damping", "nan"), ["position damping is nan"]),
+        (("--scenario", "nowhere"), ["does not exist"]),
+    ],
+)
+def test_infeasible_gains_are_refused_with_what_would_work(args: tuple[str, ...], words: list[str]) -> None:
+    done = armland("gains", *args)
+    assert done.returncode == 2, (done.stdout, done.stderr)
+    for word in words:
+        assert word in done.stderr
+    assert "Traceback" not in done.stderr

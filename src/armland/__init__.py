@@ -2,4 +2,9 @@
 
 from importlib.metadata import version
 
+from armland.compiled import drop_stale
+
 __version__ = version("armland")
+
+# Before anything compiled is imported.
+drop_stale()

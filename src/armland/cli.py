@@ -36,6 +36,18 @@ Exit code: 0 if all verdicts hold, 1 if one fails, 2 for bad input.
 """
 
 
+GAINS_EPILOG = """**Examples**
+
+`armland gains` shows the gains of the law that splits attitude control between board and ground.
+
+`armland gains --attitude 12 --delay-ms 60` asks for less, behind a longer link.
+
+`armland gains --attitude 39 --over-link --delay-ms 30` is about what the published gains ask for, and is refused.
+"""
+
+COMPILING = "Compiling the control laws: this happens once and takes less than a minute."
+
+
 def _version(show: bool) -> None:
     if show:
         print(f"armland {__version__}")
@@ -64,6 +76,9 @@ def paper(
     out: Annotated[Path, typer.Option(help="Folder for figures, logs and result.json.")] = Path("out/paper"),
     as_json: Annotated[bool, typer.Option("--json", help="Print result.json alone on standard output.")] = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures and the picture.")] = True,
+    compared: Annotated[
+        bool, typer.Option("--compare", help="Compare the paper's laws with others instead (scenario compare).")
+    ] = False,
 ) -> None:
     """Reproduce the paper's experiments E1 to E3 and judge them against the published figures."""
     from armland.config import find, load_scenario
@@ -77,9 +92,13 @@ def paper(
         overrides["trajectory"] = {"start_m": None}
     elif ee is not None:
         overrides["arm"] = {"ee": ee}
+    if compared and scenario == "paper":
+        scenario = "compare"
     loaded = load_scenario(scenario, overrides)
+    if compared:
+        _compare(loaded, out, as_json, console)
     if _compiles():
-        console.print("Compiling the control laws: this happens once and takes less than a minute.", highlight=False)
+        console.print(COMPILING, highlight=False)
     with console.status("Loading the laws and looking for a pose from which the arm reaches the whole path"):
         from armland.experiments.assembly import survey
         from armland.experiments.paper import run_experiments, warm_up
@@ -112,6 +131,58 @@ def paper(
     raise typer.Exit(0 if outcome.reproduced else 1)
 
 
+def _compare(scenario: Any, out: Path, as_json: bool, console: Console) -> None:
+    if _compiles():
+        console.print(COMPILING, highlight=False)
+    from armland.experiments.comparison import compare
+    from armland.view.report import print_comparison
+
+    _writable(out)
+    with _progress(console) as bar:
+        task = bar.add_task("laws compared", total=None)
+        comparison = compare(
+            scenario, lambda name, done, total: bar.update(task, completed=done, total=total, description=name)
+        )
+    text = json.dumps(comparison.result(), indent=2)
+    (out / "comparison.json").write_text(text + "\n", encoding="utf-8")
+    if as_json:
+        print(text)
+    else:
+        print_comparison(comparison, out)
+    raise typer.Exit(0 if all(v.holds for v in comparison.verdicts) else 1)
+
+
+@app.command(epilog=GAINS_EPILOG)
+def gains(
+    position: Annotated[float, typer.Option(help="Bandwidth of the position, rad/s.")] = 40.0,
+    position_damping: Annotated[float, typer.Option(help="Its damping ratio.")] = 1.0,
+    attitude: Annotated[float, typer.Option(help="Bandwidth of the attitude, rad/s.")] = 20.0,
+    attitude_damping: Annotated[float, typer.Option(help="Its damping ratio.")] = 0.7,
+    on_board: Annotated[
+        bool, typer.Option("--on-board/--over-link", help="Where the attitude feedback is closed.")
+    ] = True,
+    delay_ms: Annotated[float | None, typer.Option(help="Uplink delay, ms; the scenario's if absent.")] = None,
+    scenario: Annotated[str, typer.Option(help="Scenario that says UAV, rotors and link.")] = "compare",
+    as_json: Annotated[bool, typer.Option("--json", help="Print plain data.")] = False,
+) -> None:
+    """Gains by rule: from wanted bandwidth and damping, with the margins that the delay leaves; refuses what it does not allow."""
+    from armland.config import load_scenario
+    from armland.experiments.assembly import designed
+    from armland.scenario import Poles
+    from armland.view.report import print_design
+
+    overrides = {} if delay_ms is None else {"link": {"uplink_delay_ms": delay_ms}}
+    loaded = load_scenario(scenario, overrides)
+    # The rule itself refuses what is out of range, and says what would work.
+    poles = Poles.model_construct(
+        position_rad_s=position,
+        position_damping=position_damping,
+        attitude_rad_s=attitude,
+        attitude_damping=attitude_damping,
+    )
+    print_design(designed(loaded, poles, on_board), as_json)
+
+
 @app.command()
 def schema() -> None:
     """Print the JSON schema of a scenario file, for editors that complete and check TOML."""
@@ -133,8 +204,8 @@ def _progress(console: Console) -> Progress:
 
 def _compiles() -> bool:
     # Numba keeps compiled laws beside their source; none there means this start compiles them.
-    folder = Path(__file__).parent / "control" / "__pycache__"
-    return os.environ.get("NUMBA_DISABLE_JIT") != "1" and not any(folder.glob("coordinated.coordinated_tick-*.nbc"))
+    folder = Path(__file__).parent / "mission" / "__pycache__"
+    return os.environ.get("NUMBA_DISABLE_JIT") != "1" and not any(folder.glob("controller.coordinated_tick-*.nbc"))
 
 
 def _writable(out: Path) -> None:

@@ -27,11 +27,10 @@ class Calibrated(Section):
     @model_validator(mode="after")
     def _inside(self) -> "Calibrated":
         values = self.value if isinstance(self.value, tuple) else (self.value,)
+        unit = "" if self.unit == "1" else f" {self.unit}"
         for v in values:
             if not self.low <= v <= self.high:
-                raise ValueError(
-                    f"value {v:g} {self.unit} lies outside its supported range {self.low:g} to {self.high:g}"
-                )
+                raise ValueError(f"value {v:g} lies outside its supported range {self.low:g} to {self.high:g}{unit}")
         return self
 
 
@@ -50,31 +49,36 @@ def load_scenario(path: str | Path, overrides: dict[str, Any] | None = None) -> 
     problems: list[str] = []
     calibration = data.get("calibration")
     if isinstance(calibration, str):
-        problems += _merge_calibration(data, _read(find(calibration, path.parent)), calibration)
+        problems += _merge_calibration(data, _read(_find_calibration(calibration, path.parent)), calibration)
     _update(data, overrides or {})
     try:
         scenario = Scenario.model_validate_json(json.dumps(data, default=str))
     except ValidationError as e:
-        problems += [_problem(x) for x in e.errors()]
+        problems += [line for x in e.errors() for line in _problem(x).split("\n")]
     if problems:
         head = f"{path.name}: {len(problems)} problem{'s' if len(problems) > 1 else ''}"
         raise ConfigurationError("\n  ".join([head, *problems]))
     return _absolute(scenario, path.parent)
 
 
-def find(path: str | Path, folder: Path | None = None) -> Path:
-    """The file that `path` means: itself, inside `folder`, or a scenario that comes with armland.
+def find(path: str | Path) -> Path:
+    """The file that `path` means: itself, or a scenario that comes with armland.
 
     Raises:
         ConfigurationError: there is none; the message names the scenarios that come with armland.
     """
-    candidates = [Path(path)] if folder is None else [folder / path]
-    candidates += [SCENARIOS / path, SCENARIOS / f"{path}.toml"]
-    for c in candidates:
-        if c.is_file():
-            return c
-    known = ", ".join(sorted(p.stem for p in SCENARIOS.glob("*.toml")))
+    for candidate in (Path(path), SCENARIOS / path, SCENARIOS / f"{path}.toml"):
+        if candidate.is_file():
+            return candidate
+    known = ", ".join(sorted(p.stem for p in SCENARIOS.glob("*.toml") if "experiments" in _read(p)))
     raise ConfigurationError(f"scenario file {str(path)!r} does not exist; those that come with armland are: {known}")
+
+
+def _find_calibration(name: str, folder: Path) -> Path:
+    for candidate in (folder / name, SCENARIOS / name):
+        if candidate.is_file():
+            return candidate
+    raise ConfigurationError(f"calibration: file {name!r} does not exist in {str(folder.resolve())!r}")
 
 
 def schema() -> str:
@@ -110,7 +114,10 @@ def _merge_calibration(data: dict[str, Any], calibration: dict[str, Any], name: 
             try:
                 calibrated = Calibrated.model_validate_json(json.dumps(entry, default=str))
             except ValidationError as e:
-                problems += [f"{name}: {section}.{key}: {_problem(x)}" for x in e.errors()]
+                problems += [_problem(x, Calibrated, f"{name}: {section}.{key}") for x in e.errors()]
+                # The value itself is judged with the scenario, so that it is not also called missing.
+                if isinstance(entry, dict) and "value" in entry:
+                    target.setdefault(key, entry["value"])
                 continue
             if key in target:
                 problems.append(f"{section}.{key} is set here and in {name}; keep one of the two")
@@ -118,14 +125,14 @@ def _merge_calibration(data: dict[str, Any], calibration: dict[str, Any], name: 
     return problems
 
 
-def _problem(error: Any) -> str:
-    where = ".".join(str(p) for p in error["loc"]) or "scenario"
-    message = error["msg"].removeprefix("Value error, ")
+def _problem(error: Any, model: type[Section] = Scenario, head: str = "") -> str:
+    where = ".".join(str(p) for p in error["loc"])
+    message = error["msg"].removeprefix("Value error, ").replace("should be an object", "should be a table")
     if error["type"] == "extra_forbidden":
-        message = f"unknown key; known here: {', '.join(_known_keys(error['loc'][:-1]))}"
+        message = f"unknown key; known here: {', '.join(_known_keys(model, error['loc'][:-1]))}"
     elif error["type"] != "missing" and not isinstance(error["input"], dict):
         message += f" (got {_short(error['input'])})"
-    return f"{where}: {message}"
+    return ": ".join(part for part in (head, where, message) if part)
 
 
 def _short(value: Any) -> str:
@@ -133,9 +140,9 @@ def _short(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _known_keys(location: tuple[Any, ...]) -> list[str]:
+def _known_keys(model: type[Section], location: tuple[Any, ...]) -> list[str]:
     # Walks the schema along the error's path: table names by property, list items and mapping values by their type.
-    root = Scenario.model_json_schema()
+    root = model.model_json_schema()
     node: dict[str, Any] = root
     for step in location:
         node = _resolve(root, node)

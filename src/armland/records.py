@@ -45,6 +45,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("quat", (4,), "1", "world<-body", "UAV attitude, scalar first"),
         Field("omega", (3,), "rad/s", "body", "UAV angular velocity"),
         Field("hinge_force", (3,), "N", "world", "force of the end effector on the UAV, from the force-torque sensor"),
+        Field("disturbance", (3,), "N", "world", "force that the observer holds responsible for what the model misses"),
         Field("tau_att", (3,), "N·m", "body", "torque of the onboard attitude controller, as the ground predicts it"),
     ),
     "reference": (

@@ -109,11 +109,16 @@ class Rotors(Section):
 
 
 class Onboard(Section):
-    """The UAV's own attitude controller (quaternion PD)."""
+    """The UAV's own attitude controller."""
 
+    controller: Literal["quaternion_pd", "geometric", "cascade"] = "quaternion_pd"
     rate_hz: int = Field(200, ge=10)
-    kp_nm: Positive3 = Field(description="N·m per rad of attitude error, body axes")
-    kd_nms: Positive3 = Field(description="N·m per rad/s, body axes")
+    kp_nm: Positive3 = Field((0.4, 0.4, 0.3), description="N·m per rad of attitude error, body axes")
+    kd_nms: Positive3 = Field((0.056, 0.056, 0.06), description="N·m per rad/s, body axes")
+    lead_s: NonNegative = Field(0.0, description="rotor lag that the cascade's derivative makes up for")
+    observer_rad_s: NonNegative = Field(
+        0.0, description="bandwidth of the torque disturbance observer on board; 0 is none"
+    )
 
 
 class Link(Section):
@@ -140,12 +145,26 @@ class Sensors(Section):
     rate_rad_s: NonNegative = 1e-2
 
 
+class Disturbance(Section):
+    """A constant force and torque on the UAV that no model knows of."""
+
+    force_n: Vector3 = Field((0.0, 0.0, 0.0), description="at the centre of mass, world axes")
+    torque_nm: Vector3 = Field((0.0, 0.0, 0.0), description="body axes")
+
+
 class Control(Section):
     """Gains of the coordinated controller; the defaults are the paper's."""
 
     k1: Positive6 = (1.0, 1.0, 1.0, 30.0, 30.0, 30.0)
     k2: Positive6 = (1.0, 1.0, 1.0, 30.0, 30.0, 30.0)
-    k3: Positive = 35.0
+    k3: Positive = Field(35.0, description="position; attitude too unless k3_attitude is set")
+    k3_attitude: Positive | None = Field(None, description="separate k₃ of the attitude block (X.6); exact law only")
+    observer_rad_s: Positive = Field(15.0, description="bandwidth of the force disturbance observer (X.3)")
+    observer_limit_n: Positive = Field(
+        40.0, description="largest force that the observer makes up for, arm model's error included"
+    )
+    takeover_limit_n: NonNegative = Field(2.0, description="force of the arm that may stand in for a torque (X.4)")
+    observer_limit_nm: Positive = Field(0.3, description="largest moment that it holds responsible")
     orientation_kp: Positive = Field(25.0, description="N·m per rad of end effector tilt")
     orientation_kd: Positive = Field(7.0, description="N·m per rad/s of the end effector")
     elbow_force_n: NonNegative = Field(5.0, description="pull of the elbow field, downwards")
@@ -159,12 +178,32 @@ class Control(Section):
     model_inertia_scale: Positive = Field(1.0, description="factor on the controller's arm masses and inertias")
 
 
-class Experiment(Section):
-    """One row of Table II: what the coordinated controller switches on."""
+class Poles(Section):
+    """Wanted bandwidth and damping ratio; the rule makes the gains of ground and board of them."""
 
-    extra_torque: bool = Field(description="send Δτ_att of (29) to the UAV")
-    acceleration_feedforward: bool = Field(description="feed Λ ẍ_d forward in (35)")
-    measured_support: bool = Field(description="replace the static support force of (33) by the measured z force")
+    position_rad_s: Positive = 40.0
+    position_damping: Positive = 1.0
+    attitude_rad_s: Positive = 20.0
+    attitude_damping: Positive = 0.7
+
+
+class Experiment(Section):
+    """One controller to try: a row of the paper's Table II, or one that goes beyond it."""
+
+    law: Literal["classical", "paper", "exact"] = Field("paper", description="(6), (29) or (X.1)")
+    extra_torque: Literal["none", "full", "feedforward"] = Field(
+        "none", description="Δτ_att over the link: none, all of the law's, or only what cancels the hinge force (X.6)"
+    )
+    acceleration: Literal["none", "reference", "implied"] = Field(
+        "none", description="what the arm feeds forward as Λ ẍ: nothing, ẍ_d as in (35), or what the law implies (X.2)"
+    )
+    support: Literal["none", "measured", "model"] = Field(
+        "none", description="static support force of (33): none, the measured z force, or the model's"
+    )
+    observer: bool = Field(False, description="disturbance observer (X.3)")
+    limits: bool = Field(False, description="thrust and torque within what the rotors give, the arm takes over the rest (X.4)")
+    onboard: Onboard | None = Field(None, description="another attitude controller on board for this experiment")
+    rule: Poles | None = Field(None, description="gains by rule, on the ground and on board, instead of those given")
 
 
 class Move(Section):
@@ -193,21 +232,33 @@ class Scenario(Section):
     hinge: Hinge = Hinge()
     uav: Uav = Uav()
     rotors: Rotors = Rotors()
-    onboard: Onboard
+    onboard: Onboard = Onboard()
     link: Link
     sensors: Sensors = Sensors()
+    disturbance: Disturbance = Disturbance()
     control: Control
     trajectory: Trajectory
-    experiments: dict[Literal["E1", "E2", "E3"], Experiment]
+    harder: Trajectory | None = Field(None, description="second path for the comparison of laws")
+    experiments: dict[str, Experiment] = Field(min_length=1)
 
     @model_validator(mode="after")
-    def _divisors(self) -> "Scenario":
+    def _consistent(self) -> "Scenario":
+        problems = []
         rate = self.run.rate_hz
-        for name, device in (("onboard.rate_hz", self.onboard.rate_hz), ("link.rate_hz", self.link.rate_hz)):
+        devices = {"onboard.rate_hz": self.onboard.rate_hz, "link.rate_hz": self.link.rate_hz}
+        for name, experiment in self.experiments.items():
+            if experiment.onboard is not None:
+                devices[f"experiments.{name}.onboard.rate_hz"] = experiment.onboard.rate_hz
+        for name, device in devices.items():
             if device > rate or rate % device:
                 divisors = [d for d in range(1, rate + 1) if rate % d == 0]
-                near = sorted(sorted(divisors, key=lambda d: abs(d - device))[:3])
-                raise ValueError(
-                    f"{name} = {device} does not divide run.rate_hz = {rate}; nearest that do: {', '.join(map(str, near))}"
-                )
+                near = ", ".join(map(str, sorted(sorted(divisors, key=lambda d: abs(d - device))[:3])))
+                problems.append(f"{name} = {device} does not divide run.rate_hz = {rate}; nearest that do: {near}")
+        low, high = 4.0 * self.rotors.min_thrust_n, 4.0 * self.rotors.max_thrust_n
+        if not low <= self.control.thrust_n <= high:
+            problems.append(
+                f"control.thrust_n = {self.control.thrust_n:g} N is beyond the four rotors, which give {low:g} to {high:g} N"
+            )
+        if problems:
+            raise ValueError("\n".join(problems))
         return self

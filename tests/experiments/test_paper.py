@@ -56,7 +56,7 @@ def test_no_limit_was_reached(outcome: tuple[Outcome, Path]) -> None:
 
 def test_table_ii_switches_are_what_makes_the_difference() -> None:
     """Negative control: without Table II's switches E2 and E3 are E1, and the claims about them fail."""
-    off = {"extra_torque": False, "acceleration_feedforward": False, "measured_support": False}
+    off = {"extra_torque": "none", "acceleration": "none", "support": "none"}
     scenario = load_scenario("paper", {"experiments": {"E2": off, "E3": off}})
     failed = {v.claim[:2] for v in run_experiments(scenario, survey(scenario)).verdicts if not v.holds}
     assert failed == {"E2", "E3"}

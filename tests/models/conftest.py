@@ -119,6 +119,13 @@ class Twin:
         at = self.data.oMf[self.frame]
         return at.translation.copy(), at.rotation.copy()
 
+    def acceleration_bias(self, q, qd):
+        """𝒥̇ φ̇: acceleration (6,) of the controlled point, world axes, while no joint accelerates."""
+        pin.forwardKinematics(self.model, self.data, self.configuration(q), qd, np.zeros(self.model.nv))
+        return pin.getFrameClassicalAcceleration(
+            self.model, self.data, self.frame, pin.LOCAL_WORLD_ALIGNED
+        ).vector.copy()
+
     def acceleration(self, q, qd, tau):
         """Joint acceleration under `tau` and the acceleration (6,) of the controlled point, world axes."""
         x = self.configuration(q)

@@ -40,6 +40,16 @@ def test_eq1_mass_matrix_bias_gravity_and_jacobian_agree_with_pinocchio(bench, a
     assert deviation(bench, arm_name, states, tool).max() < 1e-9
 
 
+def test_eq3_velocity_terms_agree_with_pinocchio(bench, arm_name, states):
+    """C φ̇ and 𝒥̇ φ̇, which only some laws need."""
+    arm, twin = bench(arm_name, tool=True).arm, bench(arm_name, tool=True).twin
+    for q, qd in states(arm, 50, seed=11):
+        arm.qpos[:], arm.qvel[:] = q, qd
+        arm.refresh(velocity_terms=True)
+        np.testing.assert_allclose(arm.state["coriolis"][0], twin.bias(q, qd) - twin.gravity(q), atol=1e-9)
+        np.testing.assert_allclose(arm.state["acceleration_bias"][0], twin.acceleration_bias(q, qd), atol=1e-9)
+
+
 def test_eq1_comparison_notices_the_tool(bench, states):
     """Negative control: the arm without tool against Pinocchio with it."""
     arm, twin = bench("lwr4").arm, bench("lwr4", tool=True).twin

@@ -88,15 +88,21 @@ def test_eq4_without_damping_lambda_explodes_at_a_singularity(bench):
     assert max(np.abs(x).max() for x in undamped) > 1e4 / PIVOT_THRESHOLD
 
 
-def test_eq4_damping_begins_without_a_step():
-    """Pivots just above and just below the threshold: no jump where the damping sets in."""
-    M = np.eye(6)
+def test_eq4_damping_begins_and_grows_without_a_step():
+    """A single pivot p from twice the threshold down to nothing: Λ is 1/p above it, then bends smoothly to its bound."""
+    pivots = np.linspace(2.0 * PIVOT_THRESHOLD, 0.0, 4001)
     values = []
-    for pivot in PIVOT_THRESHOLD * np.array([1.0 - 1e-6, 1.0 + 1e-6]):
-        got, smallest = inertia(M, np.diag([1.0, 1.0, np.sqrt(pivot), 1.0, 1.0, 1.0]))
-        assert smallest == pytest.approx(pivot)
+    for pivot in pivots:
+        got, smallest = inertia(np.eye(6), np.diag([1.0, 1.0, np.sqrt(pivot), 1.0, 1.0, 1.0]))
+        assert smallest == pytest.approx(pivot, abs=1e-15)
         values.append(got[2, 2])
-    assert values[0] == pytest.approx(values[1], rel=1e-5)
+    values = np.array(values)
+    undamped = pivots >= PIVOT_THRESHOLD
+    np.testing.assert_allclose(values[undamped], 1.0 / pivots[undamped], rtol=1e-9)
+    # The steepest slope of 1/p above the threshold is its square: below it is no steeper than that.
+    assert np.abs(np.diff(values)).max() < 1.1 * (2.0 / 4000 / PIVOT_THRESHOLD)
+    assert values.max() < 2.0 / PIVOT_THRESHOLD
+    assert values[-1] == pytest.approx(1.0 / PIVOT_THRESHOLD)
 
 
 def test_null_space_torque_does_not_accelerate_the_end_effector(bench, states):

@@ -50,7 +50,7 @@ def test_best_home_pose_lets_the_elbow_hang_and_is_far_from_singular(arm, homes)
     heights = []
     for home in homes:
         pose(arm, home.q)
-        heights.append(arm.data.xanchor[ELBOW, 2])
+        heights.append(arm.anchor[ELBOW, 2])
     pose(arm, homes[0].q)
     assert np.linalg.svd(arm.jacobian, compute_uv=False)[-1] > 0.05
     assert heights[0] < np.median(heights) + 1e-9

@@ -1,4 +1,4 @@
-"""One tick of the coordinated controller: estimate, reference, laws (29) and (35), limits; compiled.
+"""The laws of the coordinated controller: what UAV and arm are asked for, (29) or (X.1) and (35), and the limits; compiled.
 
 | symbol | name | unit |
 |---|---|---|
@@ -12,14 +12,34 @@ from functools import lru_cache
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from armland.control.attitude import QuaternionPdGains, initial_memory, quaternion_pd
-from armland.control.backstepping import BacksteppingGains, UavParameters, impedance_force, paper_law
+from armland.control.backstepping import (
+    GRAVITY,
+    BacksteppingGains,
+    ExactGains,
+    Reference,
+    UavParameters,
+    exact_law,
+    impedance_force,
+    paper_law,
+    support_force,
+)
 from armland.control.impedance import elbow_field, orientation_pd, range_field
+from armland.control.limits import feasible, takeover
 from armland.models.operational import null_space_torque
 from armland.records import Flag, Record
-from armland.rotations import Array
+from armland.rotations import Array, cross, matrix
+
+LAWS = ("classical", "paper", "exact")
+EXTRA_TORQUES = ("none", "full", "feedforward")
+ACCELERATIONS = ("none", "reference", "implied")
+SUPPORTS = ("none", "measured", "model")
+
+CLASSICAL, PAPER, EXACT = range(3)
+FULL, FEEDFORWARD = 1, 2
+REFERENCE, IMPLIED = 1, 2
+MEASURED, MODEL = 1, 2
 
 NON_FINITE, TORQUE_LIMITED, UAV_STALE = Flag.NON_FINITE, Flag.TORQUE_LIMITED, Flag.UAV_STALE
 
@@ -35,6 +55,21 @@ def parameters_layout(joints: int) -> np.dtype:
             ("k1", "f8", (6,)),
             ("k2", "f8", (6,)),
             ("k3", "f8"),
+            ("k3_attitude", "f8"),
+            ("law", "i8"),  # index into LAWS
+            ("extra_torque", "i8"),  # index into EXTRA_TORQUES
+            ("acceleration", "i8"),  # index into ACCELERATIONS
+            ("support", "i8"),  # index into SUPPORTS
+            ("preview", "i8"),  # ticks by which the fed-forward torque looks ahead
+            ("torque_limit", "f8", (3,)),
+            ("observer", "f8"),  # rad/s; 0 is none
+            ("force_limit", "f8"),  # N, of the observer
+            ("moment_limit", "f8"),  # N·m
+            ("limited", "i8"),  # whether thrust and torque are kept within what the rotors can give (X.4)
+            ("mixer_inverse", "f8", (4, 4)),
+            ("rotor_min", "f8"),  # N
+            ("rotor_max", "f8"),  # N
+            ("takeover_limit", "f8"),  # N, force of the arm that stands in for torque
             ("orientation_kp", "f8"),
             ("orientation_kd", "f8"),
             ("R_d", "f8", (3, 3)),
@@ -44,9 +79,6 @@ def parameters_layout(joints: int) -> np.dtype:
             ("range_margin", "f8"),
             ("range_stiffness", "f8"),
             ("thrust", "f8"),
-            ("extra_torque", "i8"),
-            ("acceleration_feedforward", "i8"),
-            ("measured_support", "i8"),
             ("tool_weight", "f8"),
             ("tau_max", "f8", (joints,)),
             ("q_min", "f8", (joints,)),
@@ -60,54 +92,8 @@ def parameters_layout(joints: int) -> np.dtype:
 
 
 @njit(cache=True)
-def screen(tick: NDArray[np.void], good: NDArray[np.void], qpos: Array, qvel: Array) -> None:
-    """Replace what is not finite in the measurement by the last good value, say so in the health, copy q and q̇ out.
-
-    Args:
-        tick: all messages (1,), `tick_layout`.
-        good: the last good measurement (1,), updated.
-        qpos: receives the joint positions (n,).
-        qvel: receives the joint velocities (n,).
-    """
-    m, g, h = tick[0].measurement, good[0], tick[0].health
-    bad = keep_finite(m.q, g.q) + keep_finite(m.qd, g.qd) + keep_finite(m.wrench, g.wrench)
-    bad += keep_finite(m.uav_quat, g.uav_quat) + keep_finite(m.uav_rate, g.uav_rate)
-    h.flags = NON_FINITE if bad else 0
-    for i in range(m.q.shape[0]):
-        qpos[i] = m.q[i]
-        qvel[i] = m.qd[i]
-
-
-@njit(cache=True)
-def keep_finite(values: Array, last: Array) -> int:
-    """Replace values that are not finite by those of `last`, which is then brought up to date; returns how many."""
-    bad = 0
-    for i in range(values.shape[0]):
-        if np.isfinite(values[i]):
-            last[i] = values[i]
-        else:
-            values[i] = last[i]
-            bad += 1
-    return bad
-
-
-@njit(cache=True)
-def estimate_state(m: Record, p: Record, arm: Record, e: Record) -> None:
-    """Fill the estimate: pivot from the arm's joints, attitude as last received, hinge force without the tool's weight."""
-    e.tick = m.tick
-    for i in range(3):
-        e.r[i] = arm.position[i]
-        speed = 0.0
-        for k in range(m.q.shape[0]):
-            speed += arm.jacobian[i, k] * m.qd[k]
-        e.v[i] = speed
-        e.omega[i] = m.uav_rate[i]
-        e.hinge_force[i] = (
-            arm.rotation[i, 0] * m.wrench[0] + arm.rotation[i, 1] * m.wrench[1] + arm.rotation[i, 2] * m.wrench[2]
-        )
-    e.hinge_force[2] -= p.tool_weight
-    for i in range(4):
-        e.quat[i] = m.uav_quat[i]
+def predict_attitude_torque(p: Record, e: Record) -> None:
+    """Fill τ_att of the estimate: what the controller on board makes of the attitude that was received last."""
     level, still = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
     gains = QuaternionPdGains(p.onboard_kp, p.onboard_kd)
     tau_att, _ = quaternion_pd(e.quat, e.omega, level, still, still, gains, initial_memory(still))
@@ -116,42 +102,63 @@ def estimate_state(m: Record, p: Record, arm: Record, e: Record) -> None:
 
 
 @njit(cache=True)
-def follow(path: Array, tick: int, r: Record) -> None:
-    """Fill the reference from row `tick` of `path` (ticks, 9): r_d, ṙ_d, r̈_d; past its end the last row holds."""
-    row = path[min(tick, path.shape[0] - 1)]
-    r.tick = tick
-    for i in range(3):
-        r.r[i] = row[i]
-        r.v[i] = row[3 + i]
-        r.a[i] = row[6 + i]
-    r.quat[0] = 1.0
-    for i in range(3):
-        r.quat[1 + i] = 0.0
+def uav_law(e: Record, r: Record, p: Record, path: Array, c: Record) -> Array:
+    """Fill Δτ_att, f_T and F_EE of the command; returns the acceleration (3,), m/s², that they imply for the pivot.
 
-
-@njit(cache=True)
-def uav_law(e: Record, r: Record, p: Record, c: Record) -> None:
-    """Fill Δτ_att, f_T and F_EE of the command: (29) with Table II's switches.
-
-    Source: (29), (33) and Table II. The velocity is the pivot's, which the arm measures: the paper drops ω × ρ.
+    Source: (6), (29) with Table II's switches, or (X.1), (X.2), (X.6). The paper's laws take the pivot's velocity, which the
+    arm measures, for the CM's: they drop ω × ρ.
     """
     uav = UavParameters(p.mass, p.inertia, p.lever)
-    gains = BacksteppingGains(p.k1, p.k2, p.k3)
-    force = impedance_force(r.r - e.r, e.v, uav, gains)  # (33)
-    if p.measured_support:
-        force[2] += e.hinge_force[2]
+    R = matrix(e.quat)
+    delta_tau, r_ddot = np.zeros(3), np.zeros(3)
+    if p.law == EXACT:
+        still = np.zeros(3)
+        reference = Reference(r.quat, still, still, r.r, r.v, r.a)
+        gains = ExactGains(p.k1, p.k2, p.k3_attitude, p.k3)
+        v_cm = e.v - R @ cross(e.omega, p.lever)
+        delta_tau, force = exact_law(e.quat, e.omega, e.r, v_cm, reference, p.thrust, e.tau_att, uav, gains)  # (X.1)
+        force = force - e.disturbance  # (X.3)
+    else:
+        paper_gains = BacksteppingGains(p.k1, p.k2, p.k3)
+        rate = e.v - r.v if p.law == CLASSICAL else e.v + 0.0  # (6) damps the error, (33) the velocity
+        force = impedance_force(r.r - e.r, rate, uav, paper_gains)  # (6), (33)
+        if p.support == MEASURED:
+            force[2] += e.hinge_force[2]
+        elif p.support == MODEL:
+            force += support_force(e.quat, p.thrust, uav)
+        if p.extra_torque == FULL:
+            delta_tau, _ = paper_law(
+                e.quat, e.omega, e.r, e.v, r.quat, r.r, p.thrust, e.tau_att, uav, paper_gains
+            )  # (29)
+    if p.extra_torque == FEEDFORWARD:
+        # What travels arrives late and acts through the rotors' lag; the reference's part is known ahead.
+        ahead = path[min(r.tick + p.preview, path.shape[0] - 1)]
+        # The sensor knows the hinge's force whatever wind or model do; the tool behind it accelerates with the pivot.
+        coming = e.hinge_force - p.tool_weight / GRAVITY * r.a + p.mass * (ahead[6:9] - r.a)
+        delta_tau = np.minimum(np.maximum(-cross(p.lever, R.T @ coming), -p.torque_limit), p.torque_limit)  # (X.6)
+    thrust = p.thrust
+    if p.limited:
+        # Roll and pitch come first; the thrust that they cost, and the torque that is lost all the same, the arm makes up for.
+        asked = e.tau_att + delta_tau
+        thrust, given = feasible(p.thrust, asked, p.mixer_inverse, p.rotor_min, p.rotor_max)
+        push, _ = takeover(R, 0.0, asked - given, p.lever, p.takeover_limit)
+        force = force + (p.thrust - thrust) * R[:, 2] + push  # (X.4)
+    if p.acceleration == IMPLIED:
+        # The torques on board cancel the hinge's in (X.6): what is left turns the UAV little, and noise would dominate it.
+        lift = R[:, 2] * thrust
+        for i in range(3):
+            r_ddot[i] = (force[i] + lift[i] + e.disturbance[i]) / p.mass
+        r_ddot[2] -= GRAVITY
+        r_ddot += R @ cross(e.omega, cross(e.omega, p.lever))  # (X.2)
     for i in range(3):
         c.force[i] = force[i]
-        c.delta_tau[i] = 0.0
-    c.thrust = p.thrust
-    if p.extra_torque:
-        delta_tau, _ = paper_law(e.quat, e.omega, e.r, e.v, r.quat, r.r, p.thrust, e.tau_att, uav, gains)  # (29)
-        for i in range(3):
-            c.delta_tau[i] = delta_tau[i]
+        c.delta_tau[i] = delta_tau[i] if p.extra_torque else 0.0
+    c.thrust = thrust
+    return r_ddot
 
 
 @njit(cache=True)
-def arm_law(m: Record, r: Record, p: Record, arm: Record, mu: Array, c: Record) -> None:
+def arm_law(m: Record, r: Record, p: Record, arm: Record, mu: Array, r_ddot: Array, c: Record) -> None:
     """Fill the joint torques of the command: τ_j = g + τ_nsp + 𝒥ᵀ(Λ ẍ_d + μ ẋ_d) + 𝒥ᵀ(F_EE, τ_ori). Source: (35)."""
     n = m.q.shape[0]
     omega = np.zeros(3)
@@ -164,10 +171,15 @@ def arm_law(m: Record, r: Record, p: Record, arm: Record, mu: Array, c: Record) 
         c.torque[i] = torque[i]
         wrench[i] += c.force[i]
         wrench[3 + i] += torque[i]
-    if p.acceleration_feedforward:
-        for i in range(6):
-            for k in range(3):
-                wrench[i] += arm.lambda_ee[i, k] * r.a[k]
+    desired = np.zeros(6)
+    if p.acceleration == REFERENCE:
+        desired[:3] = r.a
+    elif p.acceleration == IMPLIED:
+        desired[:3] = r_ddot
+        desired -= arm.acceleration_bias
+    for i in range(6):
+        for k in range(6):
+            wrench[i] += arm.lambda_ee[i, k] * desired[k]
     tau0 = elbow_field(arm.axis, arm.anchor, p.elbow, p.elbow_force) + range_field(
         m.q, p.q_min, p.q_max, p.range_margin, p.range_stiffness
     )
@@ -176,6 +188,8 @@ def arm_law(m: Record, r: Record, p: Record, arm: Record, mu: Array, c: Record) 
     tau_nsp = null_space_torque(tau0, arm.mass_matrix, arm.jacobian, arm.lambda_ee)
     for i in range(n):
         tau = arm.gravity[i] + tau_nsp[i]
+        if p.acceleration == IMPLIED:
+            tau += arm.coriolis[i]
         for k in range(6):
             tau += arm.jacobian[k, i] * wrench[k]
         c.tau[i] = tau  # (35)
@@ -197,24 +211,3 @@ def limit(m: Record, p: Record, c: Record, h: Record) -> None:
     h.uav_age = (m.tick - m.uav_tick) * p.tick_s
     if m.tick - m.uav_tick > p.watchdog:
         h.flags |= UAV_STALE
-
-
-@njit(cache=True)
-def coordinated_tick(
-    tick: NDArray[np.void], path: Array, p_: NDArray[np.void], arm_: NDArray[np.void], mu: Array
-) -> None:
-    """The whole tick, in the order of the loop.
-
-    Args:
-        tick: all messages (1,), `tick_layout`; `health.flags` says what screening found.
-        path: desired position, velocity, acceleration at each tick (ticks, 9), m, m/s, m/s², world.
-        p_: parameters (1,), `parameters_layout`.
-        arm_: the arm model's state (1,), `armland.models.arm.state_layout`.
-        mu: μ ẋ_d (6,), N, N·m, world; zero where it is neglected.
-    """
-    t, p, arm = tick[0], p_[0], arm_[0]
-    estimate_state(t.measurement, p, arm, t.estimate)
-    follow(path, t.measurement.tick, t.reference)
-    uav_law(t.estimate, t.reference, p, t.command)
-    arm_law(t.measurement, t.reference, p, arm, mu, t.command)
-    limit(t.measurement, p, t.command, t.health)

@@ -25,10 +25,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from armland.models.uav import GRAVITY
 from armland.rotations import Array, cross, error, matrix, sgn
-
-GRAVITY = 9.81
-"""Standard gravity, rounded, m/s²."""
 
 
 class UavParameters(NamedTuple):

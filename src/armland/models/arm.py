@@ -38,6 +38,8 @@ def state_layout(joints: int) -> np.dtype:
             ("rotation", "f8", (3, 3)),
             ("axis", "f8", (joints, 3)),  # joint axes, world
             ("anchor", "f8", (joints, 3)),  # a point on each axis, m, world
+            ("coriolis", "f8", (joints,)),  # C φ̇, N·m; only where velocity terms are asked for
+            ("acceleration_bias", "f8", (6,)),  # 𝒥̇ φ̇, m/s², rad/s², world; likewise
         ]
     )
 
@@ -99,13 +101,15 @@ class ArmModel:
         self.qvel[:] = qd
         self.refresh()
 
-    def refresh(self) -> None:
-        """Evaluate the model at what `qpos` and `qvel` hold now."""
+    def refresh(self, velocity_terms: bool = False) -> None:
+        """Evaluate the model at what `qpos` and `qvel` hold now; `velocity_terms` adds C φ̇ and 𝒥̇ φ̇ to `state`."""
         m, d = self.model, self._data
         mujoco.mj_kinematics(m, d)
         mujoco.mj_comPos(m, d)
         mujoco.mj_makeM(m, d)
         _evaluate(*self._sources, self._constants, self.state)
+        if velocity_terms:
+            _velocity_terms(self.bias, self.qvel, self._constants, self.state)
 
     @property
     def bias(self) -> Array:
@@ -257,3 +261,36 @@ def _evaluate(
             s.jacobian[0, i], s.jacobian[1, i], s.jacobian[2, i] = moves * a0, moves * a1, moves * a2
             s.jacobian[3, i], s.jacobian[4, i], s.jacobian[5, i] = 0.0, 0.0, 0.0
     operational_inertia(s.mass_matrix, s.jacobian, s.lambda_ee)
+
+
+@njit(cache=True)
+def _velocity_terms(bias: Array, qd: Array, c_: NDArray[np.void], s_: NDArray[np.void]) -> None:
+    # 𝒥̇ φ̇ is the end effector's acceleration with φ̈ = 0, carried from joint to joint along the chain. Written out:
+    # every 3-vector would be an allocation.
+    c, s = c_[0], s_[0]
+    w0 = w1 = w2 = b0 = b1 = b2 = a0 = a1 = a2 = 0.0
+    n = qd.shape[0]
+    for i in range(n + 1):
+        if i > 0:
+            d0, d1, d2 = -s.anchor[i - 1, 0], -s.anchor[i - 1, 1], -s.anchor[i - 1, 2]
+            if i < n:
+                d0, d1, d2 = d0 + s.anchor[i, 0], d1 + s.anchor[i, 1], d2 + s.anchor[i, 2]
+            else:
+                d0, d1, d2 = d0 + s.position[0], d1 + s.position[1], d2 + s.position[2]
+            # α × d + ω × (ω × d) = α × d + ω (ω·d) − d |ω|²
+            along, square = w0 * d0 + w1 * d1 + w2 * d2, w0 * w0 + w1 * w1 + w2 * w2
+            a0 += b1 * d2 - b2 * d1 + w0 * along - d0 * square
+            a1 += b2 * d0 - b0 * d2 + w1 * along - d1 * square
+            a2 += b0 * d1 - b1 * d0 + w2 * along - d2 * square
+        if i == n:
+            break
+        s.coriolis[i] = bias[i] - s.gravity[i]
+        r0, r1, r2 = s.axis[i, 0] * qd[i], s.axis[i, 1] * qd[i], s.axis[i, 2] * qd[i]
+        x0, x1, x2 = w1 * r2 - w2 * r1, w2 * r0 - w0 * r2, w0 * r1 - w1 * r0
+        if c.hinge[i]:
+            b0, b1, b2 = b0 + x0, b1 + x1, b2 + x2
+            w0, w1, w2 = w0 + r0, w1 + r1, w2 + r2
+        else:
+            a0, a1, a2 = a0 + 2.0 * x0, a1 + 2.0 * x1, a2 + 2.0 * x2
+    s.acceleration_bias[0], s.acceleration_bias[1], s.acceleration_bias[2] = a0, a1, a2
+    s.acceleration_bias[3], s.acceleration_bias[4], s.acceleration_bias[5] = b0, b1, b2

@@ -36,8 +36,8 @@ def resolve(file: str) -> Path:
     return ASSETS / file if (ASSETS / file).is_file() else Path(file)
 
 
-def read_spec(path: str | Path) -> mujoco.MjSpec:
-    """Read an arm from an MJCF or URDF file.
+def read_spec(path: str | Path, what: str = "arm file") -> mujoco.MjSpec:
+    """Read an arm, or what else `what` says, from an MJCF or URDF file.
 
     Fixed frames of a URDF are kept (an end effector usually is one). Its meshes are dropped: they are not needed for
     dynamics and are seldom where the file says.
@@ -47,19 +47,19 @@ def read_spec(path: str | Path) -> mujoco.MjSpec:
     """
     path = Path(path)
     if not path.is_file():
-        raise ModelError(f"arm file {str(path)!r} does not exist; give an MJCF (.xml) or URDF (.urdf) file")
+        raise ModelError(f"{what} {str(path)!r} does not exist; give an MJCF (.xml) or URDF (.urdf) file")
     try:
         root = ET.parse(path).getroot()
     except (ET.ParseError, UnicodeDecodeError) as e:
-        raise ModelError(f"arm file {str(path)!r} is not well-formed XML: {e}") from e
+        raise ModelError(f"{what} {str(path)!r} is not well-formed XML: {e}") from e
     try:
         if root.tag == "robot":
             return _urdf_spec(root)
         if root.tag == "mujoco":
             return mujoco.MjSpec.from_file(str(path))
     except (ValueError, mujoco.FatalError) as e:
-        raise ModelError(f"arm file {str(path)!r} cannot be read: {' '.join(str(e).split())}") from e
-    raise ModelError(f"arm file {str(path)!r} has the root element <{root.tag}>; known are <robot> (URDF) and <mujoco>")
+        raise ModelError(f"{what} {str(path)!r} cannot be read: {' '.join(str(e).split())}") from e
+    raise ModelError(f"{what} {str(path)!r} has the root element <{root.tag}>; known are <robot> (URDF) and <mujoco>")
 
 
 def _urdf_spec(root: ET.Element) -> mujoco.MjSpec:

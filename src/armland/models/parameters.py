@@ -2,9 +2,12 @@
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
+from armland.errors import ModelError
 from armland.models.arm import ArmModel
 from armland.models.description import Tool, mark_end_effector, read_spec, resolve
+from armland.models.uav import mixer
 from armland.scenario import Scenario
 
 
@@ -43,3 +46,18 @@ def apply_default_armature(spec: mujoco.MjSpec, armature: float) -> None:
     for joint in spec.joints:
         if np.all(joint.armature == 0.0):
             joint.armature = armature
+
+
+def rotor_mixer(scenario: Scenario) -> NDArray[np.float64]:
+    """Allocation matrix (4, 4) of `models.uav.mixer` for the UAV's file: rotors about the centre of mass.
+
+    Raises:
+        ModelError: the file cannot be used or lacks a rotor's site or the centre of mass.
+    """
+    spec = read_spec(resolve(scenario.uav.file))
+    sites = {s.name: s.pos.copy() for s in spec.sites}
+    needed = ["cm", *(f"rotor_{i + 1}" for i in range(4))]
+    missing = [n for n in needed if n not in sites]
+    if missing:
+        raise ModelError(f"UAV file {scenario.uav.file!r} lacks the sites {', '.join(missing)}")
+    return mixer(np.array([sites[n] for n in needed[1:]]) - sites["cm"], scenario.rotors.drag_torque_m)

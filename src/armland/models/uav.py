@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+GRAVITY = 9.81
+"""Acceleration of gravity, m/s²."""
+
 
 def mixer(position: Array, drag_torque: float) -> Array:
     """A (4, 4) of rotors at `position` (4, 3) m, body axes, spins alternating in sign, `drag_torque` in N·m/N."""

@@ -3,9 +3,9 @@
 import mujoco
 import numpy as np
 
-from armland.errors import PlantError
-from armland.models.uav import mixer
-from armland.plant.devices import ADDRESSES, PARAMETERS, RING, STATE, actuate, sense
+from armland.errors import ConfigurationError, PlantError
+from armland.models.parameters import rotor_mixer
+from armland.plant.devices import ADDRESSES, CONTROLLERS, PARAMETERS, RING, STATE, actuate, sense
 from armland.plant.noise import BLOCK, WhiteNoise
 from armland.plant.scene import ROTORS, UAV, Scene, build_scene
 from armland.records import Tick
@@ -134,19 +134,22 @@ def _parameters(scenario: Scenario, scene: Scene) -> np.ndarray:
     p = np.zeros(1, PARAMETERS)
     rate = scenario.run.rate_hz
     link, onboard, rotors, sensors = scenario.link, scenario.onboard, scenario.rotors, scenario.sensors
-    p["uplink"] = _ticks(link.uplink_delay_ms, rate)
-    p["downlink"] = _ticks(link.downlink_delay_ms, rate)
+    p["uplink"] = _ticks("link.uplink_delay_ms", link.uplink_delay_ms, rate)
+    p["downlink"] = _ticks("link.downlink_delay_ms", link.downlink_delay_ms, rate)
     p["link_period"] = rate // link.rate_hz
     p["onboard_period"] = rate // onboard.rate_hz
     p["effectiveness"] = link.torque_effectiveness
     p["torque_limit"] = link.torque_limit_nm
-    p["kp"], p["kd"] = onboard.kp_nm, onboard.kd_nms
-    position = np.array([scene.model.site(f"{UAV}rotor_{i + 1}").pos for i in range(ROTORS)])
-    A = mixer(position - scene.model.site(f"{UAV}cm").pos, rotors.drag_torque_m)
+    p["controller"], p["kp"], p["kd"] = CONTROLLERS.index(onboard.controller), onboard.kp_nm, onboard.kd_nms
+    p["lead"], p["observer"], p["onboard_s"] = onboard.lead_s, onboard.observer_rad_s, 1.0 / onboard.rate_hz
+    p["lag_gain"] = 1.0 - np.exp(-1.0 / (onboard.rate_hz * rotors.time_constant_s))
+    p["inertia"] = scenario.uav.inertia_kgm2
+    A = rotor_mixer(scenario)
     p["mixer"], p["mixer_inverse"] = A, np.linalg.inv(A)
     p["rotor_min"], p["rotor_max"] = rotors.min_thrust_n, rotors.max_thrust_n
     p["rotor_gain"] = 1.0 - np.exp(-1.0 / (rate * rotors.time_constant_s))
     p["tick_s"] = 1.0 / rate
+    p["force"], p["moment"] = scenario.disturbance.force_n, scenario.disturbance.torque_nm
     p["sigma_q"], p["sigma_qd"] = sensors.joint_position_rad, sensors.joint_velocity_rad_s
     p["sigma_force"], p["sigma_torque"] = sensors.force_n, sensors.torque_nm
     p["force_bias"] = sensors.force_bias_n
@@ -155,8 +158,9 @@ def _parameters(scenario: Scenario, scene: Scene) -> np.ndarray:
     return p
 
 
-def _ticks(delay_ms: float, rate: int) -> int:
+def _ticks(name: str, delay_ms: float, rate: int) -> int:
     ticks = round(delay_ms * rate / 1000.0)
     if ticks >= RING:
-        raise PlantError(f"a delay of {delay_ms:g} ms is {ticks} ticks; the link's delay line holds {RING - 1}")
+        longest = (RING - 1) * 1000.0 / rate
+        raise ConfigurationError(f"{name} = {delay_ms:g} ms is too long; the link's delay line holds {longest:g} ms")
     return ticks

@@ -7,12 +7,26 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from armland.control.attitude import QuaternionPdGains, initial_memory, quaternion_pd
+from armland.control.attitude import (
+    AttitudeMemory,
+    CascadeGains,
+    GeometricGains,
+    QuaternionPdGains,
+    cascade,
+    geometric,
+    quaternion_pd,
+)
 from armland.models.uav import allocate
 from armland.records import Record
-from armland.rotations import from_rotation_vector, matrix, multiply
+from armland.rotations import cross, from_rotation_vector, matrix, multiply
 
 Array = NDArray[np.float64]
+
+CONTROLLERS = ("quaternion_pd", "geometric", "cascade")
+GEOMETRIC, CASCADE = 1, 2
+
+DERIVATIVE_LAG_S = 0.01
+"""Low pass of the cascade's derivative, s."""
 
 RING = 1024
 """Length of the link's delay lines in ticks; the longest delay that can be simulated is one tick less."""
@@ -25,13 +39,21 @@ PARAMETERS = np.dtype(
         ("onboard_period", "i8"),  # ticks
         ("effectiveness", "f8"),
         ("torque_limit", "f8", (3,)),
+        ("controller", "i8"),  # index into CONTROLLERS
         ("kp", "f8", (3,)),
         ("kd", "f8", (3,)),
+        ("lead", "f8"),  # s
+        ("onboard_s", "f8"),
+        ("inertia", "f8", (3, 3)),  # what the onboard controller believes
+        ("observer", "f8"),  # rad/s
+        ("lag_gain", "f8"),  # share of a step that a rotor makes between two samples on board
         ("mixer_inverse", "f8", (4, 4)),
         ("rotor_min", "f8"),
         ("rotor_max", "f8"),
         ("rotor_gain", "f8"),  # share of a step that a rotor makes in one tick
         ("tick_s", "f8"),
+        ("force", "f8", (3,)),  # constant disturbance, N, world
+        ("moment", "f8", (3,)),  # constant disturbance, N·m, body
         ("mixer", "f8", (4, 4)),
         ("sigma_q", "f8"),
         ("sigma_qd", "f8"),
@@ -49,10 +71,15 @@ STATE = np.dtype(
     [
         ("up", "f8", (RING, 4)),  # Δτ and thrust as sent
         ("down", "f8", (RING, 7)),  # attitude and rates as sampled
+        ("imu", "f8", (7,)),  # attitude and rates as the UAV measured them last
         ("wrench", "f8", (6,)),  # force-torque sensor's filter
         ("rotor_asked", "f8", (4,)),  # rotor thrusts that the onboard controller asks for
         ("rotor", "f8", (4,)),  # rotor thrusts that act
         ("filtering", "i8"),
+        ("integral", "f8", (3,)),  # of the cascade's rate loop
+        ("rate", "f8", (3,)),  # of its derivative
+        ("torque", "f8", (3,)),  # that the rotors are believed to give
+        ("momentum", "f8", (3,)),  # of the onboard observer
     ]
 )
 
@@ -102,7 +129,7 @@ def sense(
             torque += p.mixer[i + 1, k] * t.rotor_thrust[k]
         t.tau_uav[i] = torque
     _rotate(t.quat, data, a.hinge, t.hinge_force)
-    _downlink(tick, p, s, imu_noise, m, t)
+    _uav_sample(tick, p, s, imu_noise, m, t)
 
 
 @njit(cache=True)
@@ -116,15 +143,18 @@ def _rotate(q: Array, data: Array, at: int, out: Array) -> None:
 
 
 @njit(cache=True)
-def _downlink(tick: int, p: Record, s: Record, noise: Array, m: Record, t: Record) -> None:
-    if tick % p.link_period == 0:
+def _uav_sample(tick: int, p: Record, s: Record, noise: Array, m: Record, t: Record) -> None:
+    if tick % p.onboard_period == 0:
         tilt = np.array([p.sigma_attitude * noise[0], p.sigma_attitude * noise[1], p.sigma_attitude * noise[2]])
         quat = multiply(t.quat, from_rotation_vector(tilt))
-        row = s.down[tick % RING]
         for i in range(4):
-            row[i] = quat[i]
+            s.imu[i] = quat[i]
         for i in range(3):
-            row[4 + i] = t.omega[i] + p.sigma_rate * noise[3 + i]
+            s.imu[4 + i] = t.omega[i] + p.sigma_rate * noise[3 + i]
+    if tick % p.link_period == 0:
+        row = s.down[tick % RING]
+        for i in range(7):
+            row[i] = s.imu[i]
     taken = tick - p.downlink
     if taken >= 0 and taken % p.link_period == 0:
         row = s.down[taken % RING]
@@ -152,7 +182,7 @@ def actuate(
     ctrl: Array,
     applied: Array,
 ) -> bool:
-    """Turn a `command` into joint torques `ctrl` (n,) and the rotors' wrench `applied` (6,), world, at the UAV's CM.
+    """Turn a `command` into joint torques `ctrl` (n,) and the wrench `applied` (6,), world, at the UAV's CM.
 
     Joint torques act at once; the UAV's part goes over the link to its own attitude controller. The wrench is applied from
     outside (MuJoCo's `xfrc_applied`), because MuJoCo's force sensors do not see actuators that act at a site.
@@ -167,7 +197,7 @@ def actuate(
         row[i] = c.delta_tau[i]
     row[3] = c.thrust
     if tick % p.onboard_period == 0:
-        _onboard(tick, t, p, s)
+        _onboard(tick, p, s)
     for i in range(4):
         s.rotor[i] += p.rotor_gain * (s.rotor_asked[i] - s.rotor[i])
     # The truth is one step old; the attitude now is a step of the angular velocity further.
@@ -177,8 +207,10 @@ def actuate(
         for k in range(4):
             wrench[i] += p.mixer[i, k] * s.rotor[k]
     for i in range(3):
-        applied[i] = R[i, 2] * wrench[0]
-        applied[3 + i] = R[i, 0] * wrench[1] + R[i, 1] * wrench[2] + R[i, 2] * wrench[3]
+        applied[i] = R[i, 2] * wrench[0] + p.force[i]
+        applied[3 + i] = 0.0
+        for k in range(3):
+            applied[3 + i] += R[i, k] * (wrench[1 + k] + p.moment[k])
     total = 0.0
     for i in range(3):
         total += t.r[i] + t.omega[i]
@@ -186,7 +218,7 @@ def actuate(
 
 
 @njit(cache=True)
-def _onboard(tick: int, t: Record, p: Record, s: Record) -> None:
+def _onboard(tick: int, p: Record, s: Record) -> None:
     # The UAV's own attitude controller and allocation, with what has arrived over the link.
     sent = tick - p.uplink
     extra = np.zeros(3)
@@ -196,10 +228,49 @@ def _onboard(tick: int, t: Record, p: Record, s: Record) -> None:
         thrust = arrived[3]
         for i in range(3):
             extra[i] = p.effectiveness * min(max(arrived[i], -p.torque_limit[i]), p.torque_limit[i])
-    level, still = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
-    torque, _ = quaternion_pd(
-        t.quat, t.omega, level, still, still, QuaternionPdGains(p.kp, p.kd), initial_memory(still)
-    )
-    rotor = allocate(thrust, torque + extra, p.mixer_inverse, p.rotor_min, p.rotor_max)
+    quat, omega = s.imu[:4].copy(), s.imu[4:].copy()
+    torque = _attitude_torque(quat, omega, p, s) + extra - _disturbance(omega, p, s, extra)
+    rotor = allocate(thrust, torque, p.mixer_inverse, p.rotor_min, p.rotor_max)
     for i in range(4):
         s.rotor_asked[i] = rotor[i]
+
+
+@njit(cache=True)
+def _attitude_torque(quat: Array, omega: Array, p: Record, s: Record) -> Array:
+    level, still = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+    memory = AttitudeMemory(s.integral.copy(), s.rate.copy())
+    if p.controller == GEOMETRIC:
+        torque, _ = geometric(quat, omega, level, still, still, GeometricGains(p.kp, p.kd, p.inertia), memory)
+        return torque
+    if p.controller == CASCADE:
+        # PD times (1 + lead s): the derivative on the rate makes up for the rotors' lag.
+        k_rate = p.kd + p.kp * p.lead
+        unlimited = np.full(3, 1e9)
+        gains = CascadeGains(
+            p.kp / k_rate, unlimited, k_rate, still, p.kd * p.lead, unlimited, DERIVATIVE_LAG_S, p.onboard_s
+        )
+        torque, memory = cascade(quat, omega, level, still, still, gains, memory)
+        for i in range(3):
+            s.integral[i] = memory.integral[i]
+            s.rate[i] = memory.rate[i]
+        return torque
+    torque, _ = quaternion_pd(quat, omega, level, still, still, QuaternionPdGains(p.kp, p.kd), memory)
+    return torque
+
+
+@njit(cache=True)
+def _disturbance(omega: Array, p: Record, s: Record, extra: Array) -> Array:
+    # Momentum observer of the torque that is neither the rotors' nor gyroscopic; the rotors' lag is modelled. What comes over
+    # the link is there to cancel part of that torque, so it counts as part of what is left to find. (X.3)
+    if p.observer == 0.0:
+        return np.zeros(3)
+    momentum = p.inertia @ omega
+    gyroscopic = cross(omega, momentum)
+    found = p.observer * (momentum - s.momentum)
+    for i in range(3):
+        asked = -extra[i]
+        for k in range(4):
+            asked += p.mixer[i + 1, k] * s.rotor_asked[k]
+        s.torque[i] += p.lag_gain * (asked - s.torque[i])
+        s.momentum[i] += p.onboard_s * (s.torque[i] - gyroscopic[i] + found[i])
+    return found

@@ -55,7 +55,7 @@ def _add_motors(spec: mujoco.MjSpec) -> None:
 
 
 def _attach_uav(spec: mujoco.MjSpec, scenario: Scenario) -> None:
-    uav = read_spec(resolve(scenario.uav.file))
+    uav = read_spec(resolve(scenario.uav.file), "UAV file")
     names = frame_names(uav)
     needed = ["uav", "cm", "pivot", *(f"rotor_{i + 1}" for i in range(ROTORS))]
     missing = [n for n in needed if n not in names]

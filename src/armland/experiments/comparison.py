@@ -1,0 +1,166 @@
+"""Laws compared on the same demonstrator: two paths, a right and two wrong arm models, delays, a constant disturbance."""
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from armland.experiments.assembly import survey
+from armland.experiments.metrics import Metrics, measure
+from armland.experiments.paper import Verdict, run_experiments
+from armland.scenario import Scenario
+
+SCALES = (1.0, 0.8, 1.2)
+"""Factors on mass and inertia of the controller's arm model."""
+
+DELAYS_MS = (0.0, 20.0, 40.0, 60.0)
+"""Uplink delays of the sweep."""
+
+PUSH = {"force_n": (0.0, 2.0, 0.0), "torque_nm": (0.05, 0.0, 0.0)}
+"""Constant force and torque on the UAV."""
+
+FULL_THRUST_N = 7.44
+"""Total thrust at which the rotors have no room left for torque: four times the largest of one."""
+
+HEAVY_TORQUE_NM = (0.12, 0.0, 0.0)
+"""Constant torque beside it."""
+
+BEST, LAST_OF_PAPER = "observer", "E3"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One law under one condition."""
+
+    condition: str
+    law: str
+    metrics: Metrics
+    torque_ratio_max: float
+    resting_swing_deg: float
+    """Largest deviation of the attitude from its mean during the last second, deg: a limit cycle does not rest."""
+    resting_error_m: float
+    """Largest mean position error of an axis during the last second, m."""
+    resting_tilt_deg: float
+    """Mean attitude error during the last second, deg."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All rows and what they show."""
+
+    rows: list[Row]
+    verdicts: list[Verdict]
+
+    def row(self, condition: str, law: str) -> Row:
+        """The row of a law under a condition."""
+        return next(r for r in self.rows if (r.condition, r.law) == (condition, law))
+
+    def result(self) -> dict[str, Any]:
+        """The comparison as plain data."""
+        return {"rows": [asdict(r) for r in self.rows], "verdicts": [asdict(v) for v in self.verdicts]}
+
+
+def conditions(scenario: Scenario) -> dict[str, tuple[Scenario, tuple[str, ...]]]:
+    """The conditions by name: the changed scenario and the laws that run under it (all, where none is named)."""
+    control, link = scenario.control, scenario.link
+    out: dict[str, tuple[Scenario, tuple[str, ...]]] = {}
+    for scale in SCALES:
+        changed = scenario.model_copy(update={"control": control.model_copy(update={"model_inertia_scale": scale})})
+        out[f"model x {scale:g}"] = (changed, ())
+    if scenario.harder is not None:
+        out["harder path"] = (scenario.model_copy(update={"trajectory": scenario.harder}), ())
+    for delay in DELAYS_MS:
+        changed = scenario.model_copy(update={"link": link.model_copy(update={"uplink_delay_ms": delay})})
+        out[f"delay {delay:g} ms"] = (changed, ("E3", "implied", "split", "observer"))
+    pushed = scenario.model_copy(update={"disturbance": scenario.disturbance.model_copy(update=PUSH)})
+    out["pushed"] = (pushed, ("E3", "split", "observer"))
+    full = control.model_copy(update={"thrust_n": FULL_THRUST_N})
+    turned = scenario.disturbance.model_copy(update={"torque_nm": HEAVY_TORQUE_NM})
+    out["full thrust"] = (scenario.model_copy(update={"control": full, "disturbance": turned}), ("split", "limits", "observer"))
+    return out
+
+
+def compare(scenario: Scenario, progress: Callable[[str, int, int], None] | None = None) -> Comparison:
+    """Run every law of a scenario under every condition.
+
+    Args:
+        scenario: with the laws as its experiments; the verdicts need those of the scenario `compare`.
+        progress: called with (condition, runs done, runs in all).
+    """
+    rows: list[Row] = []
+    every = conditions(scenario)
+    workplaces = {}
+    for done, (name, (changed, laws)) in enumerate(every.items()):
+        if progress is not None:
+            progress(name, done, len(every))
+        if laws:
+            chosen = {law: e for law, e in changed.experiments.items() if law in laws}
+            changed = changed.model_copy(update={"experiments": chosen})
+        path = id(changed.trajectory)
+        if path not in workplaces:
+            workplaces[path] = survey(changed)
+        outcome = run_experiments(changed, workplaces[path])
+        for law in changed.experiments:
+            rows.append(_row(name, law, outcome.records[law], workplaces[path].legs, changed.run.rate_hz))
+    if progress is not None:
+        progress("done", len(every), len(every))
+    comparison = Comparison(rows, [])
+    return Comparison(rows, _verdicts(comparison)) if _complete(comparison) else comparison
+
+
+def _row(condition: str, law: str, ticks: np.ndarray, legs: Any, rate: int) -> Row:
+    last = ticks[-rate:]
+    tilt = np.rad2deg(2.0 * last["truth"]["quat"][:, 1:])
+    error = last["truth"]["r"] - last["reference"]["r"]
+    return Row(
+        condition,
+        law,
+        measure(ticks, legs, rate),
+        float(ticks["health"]["torque_ratio"].max()),
+        float(np.linalg.norm(tilt - tilt.mean(axis=0), axis=1).max()),
+        float(np.abs(error.mean(axis=0)).max()),
+        float(np.linalg.norm(tilt.mean(axis=0))),
+    )
+
+
+def _complete(comparison: Comparison) -> bool:
+    laws = {r.law for r in comparison.rows}
+    return {"E2", "E3", "implied", "split", "limits", "observer"} <= laws
+
+
+def _verdicts(c: Comparison) -> list[Verdict]:
+    out = []
+    for scale in SCALES:
+        name = f"model x {scale:g}"
+        best, e3 = c.row(name, BEST).metrics, c.row(name, LAST_OF_PAPER).metrics
+        for k, share in enumerate((20.0, 20.0, 10.0)):
+            ratio = best.position_rms_m[k] / e3.position_rms_m[k]
+            out.append(_below(f"{name}: {'xyz'[k]} RMS error against E3's", ratio, 1.0 / share))
+        attitude = best.attitude_max_deg / c.row(name, "E2").metrics.attitude_max_deg
+        out.append(_below(f"{name}: largest attitude error against E2's", attitude, 0.2))
+        out.append(_below(f"{name}: largest joint torque over its limit", c.row(name, BEST).torque_ratio_max, 0.99))
+    for delay in DELAYS_MS:
+        name = f"delay {delay:g} ms"
+        out.append(_below(f"{name}: swing at rest, split law (deg)", c.row(name, BEST).resting_swing_deg, 0.2))
+    late = f"delay {DELAYS_MS[-1]:g} ms"
+    out.append(
+        _above(
+            f"{late}: swing at rest, published gains over the link (deg)", c.row(late, "implied").resting_swing_deg, 0.2
+        )
+    )
+    out.append(_below("pushed: position error left, observer (m)", c.row("pushed", BEST).resting_error_m, 1e-3))
+    out.append(_below("pushed: attitude error left, observer (deg)", c.row("pushed", BEST).resting_tilt_deg, 0.5))
+    out.append(_above("pushed: attitude error left, no observer (deg)", c.row("pushed", "split").resting_tilt_deg, 0.5))
+    ratio = c.row("full thrust", "limits").metrics.position_rms_m[2] / c.row("full thrust", "split").metrics.position_rms_m[2]
+    out.append(_below("full thrust: z RMS error, aware of the rotors' limits against not", ratio, 0.75))
+    return out
+
+
+def _below(claim: str, value: float, bound: float) -> Verdict:
+    return Verdict(claim, value, [0.0, bound], bool(value <= bound))
+
+
+def _above(claim: str, value: float, bound: float) -> Verdict:
+    # No infinity: the result is JSON.
+    return Verdict(claim, value, [bound, 1e9], bool(value >= bound))

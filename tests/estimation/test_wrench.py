@@ -1,0 +1,248 @@
+"""Bias and tool removal against MuJoCo's force and torque sensors and against statistics."""
+
+import mujoco
+import numpy as np
+import pytest
+from numba import njit
+from scipy.signal import lfilter
+from scipy.spatial.transform import Rotation
+from scipy.stats import chi2
+
+from armland.estimation.wrench import (
+    MEMORY,
+    Wrench,
+    at_pivot,
+    compensate,
+    identify_tool,
+    tare,
+    wrench_parameters,
+)
+
+H, MASS, COM, TIP = 1e-3, 0.30, (0.01, -0.02, 0.025), 0.056
+SETTINGS = Wrench(mass=MASS, com=COM)
+UPRIGHT = np.eye(3)
+SCENE = f"""
+<mujoco>
+  <option gravity="0 0 -9.81"/>
+  <worldbody>
+    <body name="flange">
+      <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/><joint type="slide" axis="0 0 1"/>
+      <joint type="ball"/>
+      <inertial pos="0 0 0" mass="2" diaginertia="0.01 0.01 0.01"/>
+      <body name="tool">
+        <inertial pos="{COM[0]} {COM[1]} {COM[2]}" mass="{MASS}" diaginertia="2e-4 2e-4 1e-4"/>
+        <site name="sensor"/>
+        <site name="tip" pos="0 0 {TIP}"/>
+      </body>
+    </body>
+  </worldbody>
+  <sensor><force site="sensor"/><torque site="sensor"/></sensor>
+</mujoco>
+"""
+
+
+@pytest.fixture(scope="module")
+def model():
+    return mujoco.MjModel.from_xml_string(SCENE)
+
+
+def reading(model, R, acceleration=(0.0, 0.0, 0.0), on_tip=(0.0, 0.0, 0.0)):
+    """What the sensor reads (6,), with a force `on_tip` (3,) N, world, that somebody puts on the tool's tip."""
+    data = mujoco.MjData(model)
+    data.qpos[3:] = R.as_quat(scalar_first=True)
+    # Whatever force it takes to move the flange like that.
+    data.qacc[:3] = acceleration
+    mujoco.mj_inverse(model, data)
+    pushed, force = np.zeros(model.nv), np.array(on_tip, float)
+    mujoco.mj_applyFT(model, data, force, np.zeros(3), data.site("tip").xpos, model.body("tool").id, pushed)
+    data.qfrc_applied[:] = data.qfrc_inverse - pushed
+    tool = model.body("tool").id
+    data.xfrc_applied[tool] = [*force, *np.cross(data.site("tip").xpos - data.xipos[tool], force)]
+    mujoco.mj_forward(model, data)
+    np.testing.assert_allclose(data.qacc[:3], acceleration, atol=1e-9)
+    return data.sensordata.copy()
+
+
+def orientations(count, seed=0):
+    return Rotation.random(count, rng=np.random.default_rng(seed))
+
+
+def external_of(measured, R=UPRIGHT, acceleration=(0.0, 0.0, 0.0), free=False, settings=SETTINGS, memory=None):
+    external, sigma = np.zeros(6), np.zeros(6)
+    s = np.zeros(1, MEMORY) if memory is None else memory
+    p = wrench_parameters(settings, H)
+    compensate(measured, np.ascontiguousarray(R), np.array(acceleration, float), free, p, s, external, sigma)
+    return external
+
+
+def test_free_tool_reads_nothing_in_any_orientation_and_acceleration(model):
+    rng = np.random.default_rng(1)
+    for R in orientations(20):
+        acceleration = 2.0 * rng.normal(size=3)
+        measured = reading(model, R, acceleration)
+        np.testing.assert_allclose(external_of(measured, R.as_matrix(), acceleration), 0.0, atol=1e-9)
+        # Controls: what each term is worth.
+        still = external_of(measured, R.as_matrix())
+        assert np.linalg.norm(still[:3]) == pytest.approx(MASS * np.linalg.norm(acceleration))
+        turned = external_of(measured, UPRIGHT, acceleration)
+        assert np.linalg.norm(turned[:3]) > 0.1
+
+
+def test_force_on_the_uav_comes_out_and_has_no_torque_about_the_tip(model):
+    rng = np.random.default_rng(2)
+    for R in orientations(20):
+        on_uav, acceleration = 5.0 * rng.normal(size=3), rng.normal(size=3)
+        measured = reading(model, R, acceleration, on_tip=-on_uav)
+        external = external_of(measured, R.as_matrix(), acceleration)
+        force, torque = at_pivot(external, R.as_matrix(), np.array([0.0, 0.0, TIP]))
+        np.testing.assert_allclose(force, on_uav, atol=1e-9)
+        np.testing.assert_allclose(torque, 0.0, atol=1e-9)
+        assert np.linalg.norm(external[3:]) > 1e-3
+
+
+def test_tool_and_bias_are_identified_from_four_orientations(model):
+    rng, bias = np.random.default_rng(3), np.array([1.0, -2.0, 0.5, 0.05, -0.03, 0.01])
+    R = orientations(4, seed=5)
+    noise = rng.normal(size=(4, 6)) * np.repeat([0.05, 0.002], 3) / np.sqrt(500.0)
+    readings = np.array([reading(model, r) for r in R]) + bias + noise
+    mass, com, found = identify_tool(readings, R.as_matrix())
+    assert mass == pytest.approx(MASS, rel=3e-3)
+    np.testing.assert_allclose(com, COM, atol=2e-4)
+    np.testing.assert_allclose(found, bias, atol=0.01)
+
+
+@pytest.mark.parametrize("axes", [[[0, 0, 1]] * 4, [[1, 0, 0]] * 2])
+def test_orientations_that_do_not_tell_are_refused(axes, model):
+    R = Rotation.from_rotvec(np.array(axes) * np.linspace(0.0, 2.0, len(axes))[:, None])
+    with pytest.raises(ValueError, match="of 10 numbers"):
+        identify_tool(np.array([reading(model, r) for r in R]), R.as_matrix())
+
+
+@njit
+def stream(measured, free, p, s):
+    """Outputs, claimed deviations and biases (ticks, 6) each, upright and at rest."""
+    ticks = len(measured)
+    out, sigma, bias = np.empty((ticks, 6)), np.empty((ticks, 6)), np.empty((ticks, 6))
+    R, still = np.eye(3), np.zeros(3)
+    for k in range(ticks):
+        compensate(measured[k], R, still, free[k], p, s, out[k], sigma[k])
+        bias[k] = s[0].bias
+    return out, sigma, bias
+
+
+WEIGHT = np.array([0.0, 0.0, MASS * 9.81, *np.cross(COM, [0.0, 0.0, MASS * 9.81])])
+
+
+def played(
+    seconds,
+    bias=(1.0, -0.5, 2.0, 0.02, -0.03, 0.01),
+    load=0.0,
+    free=True,
+    settings=SETTINGS,
+    noise=1.0,
+    seed=4,
+    drift=0.0,
+    memory=None,
+):
+    """`load` and `bias`: (6,) or (ticks, 6); `free`: bool or (ticks,)."""
+    ticks = round(seconds / H)
+    rng, p = np.random.default_rng(seed), wrench_parameters(settings, H)
+    g = settings.filter_gain
+    white = lfilter([g], [1.0, g - 1.0], rng.normal(size=(ticks, 6)) * np.repeat(settings.sigma, 3), axis=0)
+    walk = drift * np.cumsum(rng.normal(size=(ticks, 6)) * np.sqrt(p["drift"][0] ** 2 * H), axis=0)
+    true_bias = np.broadcast_to(bias, (ticks, 6)) + walk
+    measured = WEIGHT + true_bias + load + noise * white
+    s = np.zeros(1, MEMORY) if memory is None else memory
+    out, sigma, found = stream(measured, np.broadcast_to(free, ticks).copy(), p, s)
+    return out, sigma, found, measured, true_bias
+
+
+def test_bias_is_learnt_while_free():
+    out, sigma, found, _, bias = played(20.0)
+    np.testing.assert_allclose(found[-1, :3], bias[-1, :3], atol=0.006)
+    np.testing.assert_allclose(found[-1, 3:], bias[-1, 3:], atol=3e-4)
+    # 2 N at 0.5 N/s.
+    assert np.abs(found[3900, 2] - 2.0) > 0.02 > np.abs(found[4700, 2] - 2.0)
+    assert (np.abs(out[10_000:].mean(axis=0)) < 0.3 * sigma[-1]).all()
+    untold = played(20.0, free=False)[0]
+    np.testing.assert_allclose(untold.mean(axis=0), bias[0], atol=0.01)
+
+
+@pytest.mark.parametrize("rate", [SETTINGS.rate, (1e9, 1e9)])
+def test_output_never_jumps_because_of_the_bias(rate):
+    """Bias steps, loads and a flickering `free`: the correction moves at most at its rate."""
+    rng, ticks = np.random.default_rng(5), 30_000
+    bias, load = np.zeros((ticks, 6)), np.zeros((ticks, 6))
+    bias[8000:], load[15_000:20_000] = [0.8, -1.0, 0.5, 0.05, 0.0, 0.02], [0.0, 0.0, 1.5, 0.0, 0.1, 0.0]
+    free = np.repeat(rng.random(ticks // 250) < 0.8, 250)
+    free[15_000:20_000] = False
+    out, _, _, measured, _ = played(30.0, bias=bias, load=load, free=free, settings=SETTINGS._replace(rate=rate))
+    correction = measured - WEIGHT - out
+    jump = np.abs(np.diff(correction, axis=0)).max(axis=0)
+    smooth = (jump <= np.repeat(SETTINGS.rate, 3) * H * (1.0 + 1e-6)).all()
+    assert smooth == (rate == SETTINGS.rate)
+    assert np.abs(correction).max() > 0.3
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_load_is_not_learnt_away(told):
+    ticks = 40_000
+    load = np.zeros((ticks, 6))
+    load[10_000:, 2] = 2.0
+    free = np.ones(ticks, bool)
+    free[10_000:] = not told
+    out, _, found, _, _ = played(40.0, bias=np.zeros(6), load=load, free=free)
+    if told:
+        assert np.ptp(found[10_000:], axis=0).max() == 0.0
+        assert out[10_000:, 2].mean() == pytest.approx(2.0, abs=0.02)
+    else:
+        assert out[-1000:, 2].mean() < 0.3
+
+
+@pytest.mark.parametrize("block_s", [SETTINGS.block_s, 0.02])
+def test_contact_noticed_within_a_block_teaches_nothing(block_s):
+    """The contact is noticed 150 ms late: more than a short block, less than the one that is set."""
+    ticks = 12_000
+    load, free = np.zeros((ticks, 6)), np.ones(ticks, bool)
+    load[10_000:, 2] = 2.5
+    free[10_150:] = False
+    settings = SETTINGS._replace(block_s=block_s)
+    touched = played(12.0, np.zeros(6), load, free, settings, noise=0.0)[2]
+    assert (np.abs(touched[-1]).max() == 0.0) == (block_s == SETTINGS.block_s)
+
+
+def test_implausible_reading_teaches_nothing_and_is_reported():
+    load = np.zeros(6)
+    load[0] = 4.0
+    s = np.zeros(1, MEMORY)
+    _, _, found, _, _ = played(3.0, bias=np.zeros(6), load=load, memory=s)
+    assert np.abs(found).max() == 0.0
+    assert s["implausible"][0] == 1
+    s = np.zeros(1, MEMORY)
+    assert np.abs(played(3.0, bias=np.zeros(6), load=0.5 * load, memory=s)[2]).max() > 0.5
+    assert s["implausible"][0] == 0
+    assert not np.abs(played(1.0, bias=np.full(6, np.nan))[2]).max() > 0.0
+
+
+@pytest.mark.parametrize(("real_drift", "consistent"), [(1.0, True), (4.0, False)])
+def test_noise_of_the_output_is_what_is_claimed(real_drift, consistent):
+    """Learnt for 12 s, then loaded for 30 s; the sensor's 100 Hz filter colours the noise. Control: a bias that drifts faster."""
+    settings = SETTINGS._replace(filter_gain=1.0 - np.exp(-2.0 * np.pi * 0.1))
+    free = np.arange(42_000) < 12_000
+    early, late = [], []
+    for seed in range(12):
+        out, sigma, _, _, _ = played(42.0, np.zeros(6), 0.0, free, settings, seed=seed, drift=real_drift)
+        early.append(out[11_999] / sigma[11_999])
+        late.append(out[-1] / sigma[-1])
+    # The drift between a block's middle and now is not in the claim: it is what `early` may be off by.
+    assert chi2(72).cdf(np.sum(np.square(early))) < 0.9999 or not consistent
+    level = chi2(72).cdf(np.sum(np.square(late)))
+    assert (0.0005 < level < 0.9995) == consistent
+
+
+def test_tare_starts_with_a_known_bias():
+    bias, s = np.array([1.0, -2.0, 0.5, 0.05, -0.03, 0.01]), np.zeros(1, MEMORY)
+    tare(s, bias, np.repeat([0.01, 1e-3], 3))
+    out, sigma, _, _, _ = played(0.05, bias=bias, memory=s)
+    assert np.abs(out.mean(axis=0)[:3]).max() < 0.03
+    np.testing.assert_allclose(sigma[0, 0], np.hypot(0.05, 0.01), rtol=1e-3)

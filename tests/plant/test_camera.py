@@ -1,0 +1,233 @@
+"""The camera's measurement model against the published numbers, an independent corner model, and plain geometry."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from scipy.stats import chisquare
+
+from armland.errors import PlantError
+from armland.estimation.plate import MEMORY, PLATE, PoseFilter, pose_filter_parameters
+from armland.estimation.pose_filter import fuse, predict
+from armland.estimation.reckoning import advance
+from armland.plant.camera import (
+    NOISE_WIDTH,
+    PARAMETERS,
+    SAMPLE,
+    STATE,
+    Camera,
+    camera_parameters,
+    noise_through,
+    observe,
+    visible,
+)
+from armland.plant.noise import stream
+
+LEVEL, ORIGIN = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+FACING = np.array([0.0, 1.0, 0.0, 0.0])  # the printed face looks back along the camera's z
+STEADY = Camera(lose=0.0)
+
+
+class Seen:
+    """The samples of a run: arrival ticks and the samples as they came."""
+
+    def __init__(self, arrival, samples):
+        self.arrival, self.samples = np.array(arrival), np.array(samples, dtype=SAMPLE)
+
+    def __getattr__(self, name):
+        return self.samples[name]
+
+
+def watch(ticks, camera=STEADY, offset=(0.0, 0.0, 0.5), quat=FACING, frozen=lambda tick: False, base_hz=1000, eye=None):
+    """Run the camera; `offset` and `quat` of the marker, and `eye` = (position, quat) of the camera, may be functions of the tick."""
+    p, s, sample = camera_parameters(camera, base_hz), np.zeros(1, STATE), np.zeros(1, SAMPLE)
+    noise = stream(1, "camera").standard_normal((ticks, NOISE_WIDTH))
+    arrival, samples = [], []
+    for k in range(ticks):
+        position = np.asarray(offset(k) if callable(offset) else offset, float)
+        attitude = quat(k) if callable(quat) else quat
+        here, view = eye or (ORIGIN, LEVEL)
+        observe(k, here, view, position, attitude, noise[k], frozen(k), p, s, sample)
+        if sample["fresh"][0]:
+            arrival.append(k)
+            samples.append(sample[0].copy())
+    return Seen(arrival, samples)
+
+
+@pytest.mark.parametrize(("depth", "lateral_mm", "depth_mm"), [(0.3, 0.4, 0.9), (1.0, 0.7, 3.3)])
+def test_spread_of_samples_is_the_published_precision(depth, lateral_mm, depth_mm):
+    seen = watch(60_000, offset=(0.02, -0.01, depth))
+    error = seen.position - [0.02, -0.01, depth]
+    # 1800 samples: the standard deviation is known to 1.7 %.
+    np.testing.assert_allclose(1e3 * error.std(axis=0), [lateral_mm, lateral_mm, depth_mm], rtol=0.06)
+    assert (np.abs(error.mean(axis=0)) < 4.0 * seen.sigma[0, :3] / np.sqrt(len(error))).all()
+
+
+def test_spread_of_attitude_is_that_of_a_square_fitted_to_four_noisy_corners():
+    """Oracle: corners with independent errors, their mean and their rigid least-squares fit by scipy."""
+    size, rng = 0.08, np.random.default_rng(3)
+    seen = watch(60_000, offset=(0.0, 0.0, 0.6), camera=STEADY._replace(marker_size_m=size))
+    lateral, depth = seen.sigma[0, 0], seen.sigma[0, 2]
+    corners = 0.5 * size * np.array([[1, 1, 0], [1, -1, 0], [-1, -1, 0], [-1, 1, 0]])
+    fits, means = [], []
+    for _ in range(4000):
+        noisy = corners + 2.0 * rng.normal(size=(4, 3)) * [lateral, lateral, depth]
+        means.append(noisy.mean(axis=0))
+        fits.append(_fit(noisy, corners))
+    np.testing.assert_allclose(np.std(means, axis=0), seen.sigma[0, :3], rtol=0.06)
+    turns = (
+        Rotation.from_quat(seen.quat, scalar_first=True) * Rotation.from_quat(FACING, scalar_first=True).inv()
+    ).as_rotvec()
+    np.testing.assert_allclose(np.std(fits, axis=0), turns.std(axis=0), rtol=0.08)
+
+
+def _fit(noisy, corners):
+    # Small rotation θ with θ × c ≈ noisy − mean − c, unweighted per direction: tilt from depths, yaw from the image plane.
+    d = noisy - noisy.mean(axis=0) - corners
+    x, y = corners[:, 0], corners[:, 1]
+    return [y @ d[:, 2] / (y @ y), -x @ d[:, 2] / (x @ x), (x @ d[:, 1] - y @ d[:, 0]) / (x @ x + y @ y)]
+
+
+def test_a_larger_marker_helps_the_attitude_and_not_the_position():
+    small, large = (watch(200, camera=STEADY._replace(marker_size_m=s)).sigma[0] for s in (0.04, 0.12))
+    np.testing.assert_array_equal(large[:3], small[:3])
+    np.testing.assert_allclose(small[3:] / large[3:], 3.0)
+
+
+def test_noise_law_meets_both_points_and_refuses_what_it_cannot():
+    floor, slope = noise_through((0.3, 1.0), (0.9e-3, 3.3e-3), 2)
+    assert np.hypot(floor, slope * 0.09) == pytest.approx(0.9e-3)
+    assert np.hypot(floor, slope) == pytest.approx(3.3e-3)
+    for sigma in ((1e-3, 0.5e-3), (1e-3, 12e-3)):
+        with pytest.raises(PlantError, match="must lie in"):
+            noise_through((0.3, 1.0), sigma, 2)
+
+
+@pytest.mark.parametrize("base_hz", [1000, 500])
+def test_rate_is_exact_on_average_and_the_delay_uniform(base_hz):
+    seen = watch(20 * base_hz, base_hz=base_hz)
+    period = base_hz / 30
+    # The last images are still under way.
+    assert len(seen.arrival) in range(20 * 30 - 4, 20 * 30 + 1)
+    assert np.abs(seen.capture - np.arange(len(seen.capture)) * period).max() < 1.0
+    delay = seen.arrival - seen.capture
+    ticks = np.arange(round(0.050 * base_hz), round(0.075 * base_hz) + 1)
+    assert set(delay) <= set(ticks)
+    assert chisquare([np.sum(delay == k) for k in ticks]).pvalue > 1e-3
+    assert (np.diff(seen.arrival) > 0).all()
+
+
+def test_no_image_overtakes_another_where_the_delay_scatters_by_periods():
+    seen = watch(10_000, camera=STEADY._replace(rate_hz=100, delay_ms=(10.0, 90.0)))
+    assert (np.diff(seen.capture) == 10).all()
+    assert (np.diff(seen.arrival) > 0).all()
+
+
+def test_sample_belongs_to_the_capture_and_not_to_the_arrival():
+    seen = watch(8000, offset=lambda k: (0.1 * np.sin(0.003 * k), 0.0, 0.4))
+    at_capture = 0.1 * np.sin(0.003 * seen.capture)
+    at_arrival = 0.1 * np.sin(0.003 * seen.arrival)
+    assert np.sqrt(np.mean((seen.position[:, 0] - at_capture) ** 2)) < 0.6e-3
+    assert np.sqrt(np.mean((seen.position[:, 0] - at_arrival) ** 2)) > 8e-3
+
+
+def test_pose_is_that_of_the_marker_in_the_camera_frame():
+    view = Rotation.from_rotvec([0.3, -0.2, 0.5])
+    eye = np.array([0.4, -0.3, 0.7])
+    marker = view * Rotation.from_rotvec([np.pi, 0.0, 0.0]) * Rotation.from_rotvec([0.1, 0.2, -0.7])
+    place = eye + view.apply([0.03, -0.05, 0.4])
+    seen = watch(
+        4000,
+        offset=place,
+        quat=marker.as_quat(scalar_first=True),
+        eye=(eye, view.as_quat(scalar_first=True)),
+        camera=STEADY._replace(honesty=1e-6),
+    )
+    back = eye + view.apply(seen.position[-1])
+    np.testing.assert_allclose(back, place, atol=1e-7)
+    attitude = view * Rotation.from_quat(seen.quat[-1], scalar_first=True)
+    assert (attitude * marker.inv()).magnitude() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("offset", "tilt_deg", "expected"),
+    [
+        ((0.0, 0.0, 0.5), 0.0, True),
+        ((0.0, 0.0, -0.5), 0.0, False),  # behind
+        ((0.0, 0.0, 0.04), 0.0, False),  # too near
+        ((0.0, 0.0, 2.3), 0.0, False),  # too far
+        ((0.24, 0.0, 0.5), 0.0, True),  # the edge of the view lies at 0.289 m, the marker's at 0.28 m
+        ((0.26, 0.0, 0.5), 0.0, False),  # a corner is out of view
+        ((0.0, 0.19, 0.5), 0.0, False),  # the image is lower than wide
+        ((0.19, 0.0, 0.5), 0.0, True),
+        ((0.0, 0.0, 0.5), 55.0, True),
+        ((0.0, 0.0, 0.5), 65.0, False),  # at too flat an angle
+        ((0.0, 0.0, 0.5), 180.0, False),  # from behind
+    ],
+)
+def test_what_is_in_view(offset, tilt_deg, expected):
+    R = (Rotation.from_quat(FACING, scalar_first=True) * Rotation.from_euler("x", tilt_deg, degrees=True)).as_matrix()
+    p = camera_parameters(STEADY, 1000)
+    assert p.dtype == PARAMETERS
+    assert visible(np.array(offset), np.ascontiguousarray(R), p[0]) == expected
+    assert (
+        len(watch(300, offset=offset, quat=Rotation.from_matrix(R).as_quat(scalar_first=True)).arrival) > 0
+    ) == expected
+
+
+def test_dropouts_come_as_often_and_as_long_as_stated():
+    lose, stay = 0.05, 0.6
+    seen = watch(300_000, camera=STEADY._replace(lose=lose, stay_lost=stay))
+    gaps = np.round(np.diff(seen.capture) * 0.03).astype(int) - 1
+    lost_share = gaps.sum() / (gaps.sum() + len(gaps))
+    # A chain with two states: found → lost with p, lost → lost with s.
+    assert lost_share == pytest.approx(lose / (1.0 + lose - stay), rel=0.12)
+    assert gaps[gaps > 0].mean() == pytest.approx(1.0 / (1.0 - stay), rel=0.12)
+    assert len(watch(3000, camera=STEADY._replace(lose=1.0, stay_lost=1.0)).arrival) == 0
+
+
+def test_frozen_camera_delivers_the_last_image_with_stamps_that_look_new():
+    def moving(k):
+        return (1e-4 * k, 0.0, 0.5)
+
+    seen = watch(2000, offset=moving, frozen=lambda k: k >= 1000)
+    after = seen.samples[seen.capture >= 1000]
+    assert len(after) > 20
+    assert (np.diff(after["capture"]) > 0).all()
+    assert (after["position"] == seen.samples[seen.capture < 1000]["position"][-1]).all()
+    healthy = watch(2000, offset=moving)
+    assert len(np.unique(healthy.position[:, 0])) == len(healthy.position)
+    assert len(watch(500, frozen=lambda k: True).arrival) == 0
+
+
+def test_claimed_noise_may_be_a_lie():
+    honest, liar = (watch(20_000, camera=STEADY._replace(honesty=h)) for h in (1.0, 3.0))
+    np.testing.assert_array_equal(liar.sigma, honest.sigma)
+    np.testing.assert_allclose(liar.position.std(axis=0), 3.0 * honest.position.std(axis=0), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"rate_hz": 0}, {"rate_hz": 2000}, {"delay_ms": (75.0, 50.0)}, {"delay_ms": (50.0, 500.0)}]
+)
+def test_impossible_cameras_are_refused(wrong):
+    with pytest.raises(PlantError, match="camera: "):
+        camera_parameters(Camera(**wrong), 1000)
+
+
+@pytest.mark.parametrize("frozen", [False, True])
+def test_pose_filter_takes_the_samples_and_notices_the_frozen_image(frozen):
+    settings = PoseFilter()
+    p, s, plate = pose_filter_parameters(settings, 1e-3), np.zeros(1, MEMORY), np.zeros(1, PLATE)
+    cm, weight = np.array([0.02, -0.03, 0.5]), 9.81 * settings.mass
+    seen = watch(2000, offset=cm + settings.marker_offset, camera=Camera(), frozen=lambda k: frozen and k >= 1000)
+    samples = dict(zip(seen.arrival, seen.samples, strict=True))
+    valid = []
+    for k in range(2000):
+        advance(k, k, LEVEL, ORIGIN, weight, ORIGIN, LEVEL, p, s)
+        if k in samples:
+            fuse(samples[k].reshape(1), p, s)
+        predict(0.0, p, s, plate)
+        valid.append(plate["valid"][0])
+        if k == 999:
+            np.testing.assert_allclose(plate["position"][0], cm + settings.plate_offset, atol=4e-3)
+    assert all(valid[400:1000])
+    assert any(valid[1400:]) != frozen
