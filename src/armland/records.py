@@ -71,6 +71,11 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("torque_ratio", (), "1", "joint", "largest joint torque over its limit"),
         Field("uav_age", (), "s", "-", "age of the UAV sample in use"),
     ),
+    "proof": (
+        _TICK,
+        Field("v2", (), "J", "-", "Lyapunov function V₂ (26) of the law in use, as its estimate has it"),
+        Field("v2_rate", (), "W", "-", "rate of V₂ that the proof promises (30)"),
+    ),
     "truth": (
         _TICK,
         Field("r", (3,), "m", "world", "pivot position"),
@@ -130,4 +135,5 @@ class Tick:
         self.reference = self.buffer["reference"]
         self.command = self.buffer["command"]
         self.health = self.buffer["health"]
+        self.proof = self.buffer["proof"]
         self.truth = self.buffer["truth"]

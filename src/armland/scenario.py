@@ -201,7 +201,9 @@ class Experiment(Section):
         "none", description="static support force of (33): none, the measured z force, or the model's"
     )
     observer: bool = Field(False, description="disturbance observer (X.3)")
-    limits: bool = Field(False, description="thrust and torque within what the rotors give, the arm takes over the rest (X.4)")
+    limits: bool = Field(
+        False, description="thrust and torque within what the rotors give, the arm takes over the rest (X.4)"
+    )
     onboard: Onboard | None = Field(None, description="another attitude controller on board for this experiment")
     rule: Poles | None = Field(None, description="gains by rule, on the ground and on board, instead of those given")
 

@@ -21,7 +21,9 @@ from armland.control.backstepping import (
     Reference,
     UavParameters,
     exact_law,
+    exact_lyapunov,
     impedance_force,
+    lyapunov,
     paper_law,
     support_force,
 )
@@ -155,6 +157,21 @@ def uav_law(e: Record, r: Record, p: Record, path: Array, c: Record) -> Array:
         c.delta_tau[i] = delta_tau[i] if p.extra_torque else 0.0
     c.thrust = thrust
     return r_ddot
+
+
+@njit(cache=True)
+def prove(e: Record, r: Record, p: Record, proof: Record) -> None:
+    """Fill V₂ (26) and the rate (30) that it has under the law in use, on the kinematics that this law assumes."""
+    proof.tick = e.tick
+    uav, still = UavParameters(p.mass, p.inertia, p.lever), np.zeros(3)
+    if p.law == EXACT:
+        v_cm = e.v - matrix(e.quat) @ cross(e.omega, p.lever)
+        reference = Reference(r.quat, still, still, r.r, r.v, r.a)
+        gains = ExactGains(p.k1, p.k2, p.k3_attitude, p.k3)
+        proof.v2, proof.v2_rate = exact_lyapunov(e.quat, e.omega, e.r, v_cm, reference, uav, gains)  # (X.1)
+    else:
+        paper_gains = BacksteppingGains(p.k1, p.k2, p.k3)
+        proof.v2, proof.v2_rate = lyapunov(e.quat, e.omega, e.r, e.v, r.quat, r.r, uav, paper_gains)  # (26), (30)
 
 
 @njit(cache=True)

@@ -47,7 +47,9 @@ class Detection(NamedTuple):
     quat: Array  # (4,) camera<-marker, scalar first
     corners: Array  # (4, 2) px, of the black square: top left, top right, bottom right, bottom left of an upright print
     residual_px: float  # rms distance of the corners from those of the pose
-    ambiguity: float  # residual over that of the square's other pose, in [0, 1]: near 1 the tilt may be the mirrored one
+    ambiguity: (
+        float  # residual over that of the square's other pose, in [0, 1]: near 1 the tilt may be the mirrored one
+    )
 
 
 def pinhole(width: int, height: int, fovy_deg: float) -> Intrinsics:

@@ -77,7 +77,10 @@ def conditions(scenario: Scenario) -> dict[str, tuple[Scenario, tuple[str, ...]]
     out["pushed"] = (pushed, ("E3", "split", "observer"))
     full = control.model_copy(update={"thrust_n": FULL_THRUST_N})
     turned = scenario.disturbance.model_copy(update={"torque_nm": HEAVY_TORQUE_NM})
-    out["full thrust"] = (scenario.model_copy(update={"control": full, "disturbance": turned}), ("split", "limits", "observer"))
+    out["full thrust"] = (
+        scenario.model_copy(update={"control": full, "disturbance": turned}),
+        ("split", "limits", "observer"),
+    )
     return out
 
 
@@ -152,7 +155,10 @@ def _verdicts(c: Comparison) -> list[Verdict]:
     out.append(_below("pushed: position error left, observer (m)", c.row("pushed", BEST).resting_error_m, 1e-3))
     out.append(_below("pushed: attitude error left, observer (deg)", c.row("pushed", BEST).resting_tilt_deg, 0.5))
     out.append(_above("pushed: attitude error left, no observer (deg)", c.row("pushed", "split").resting_tilt_deg, 0.5))
-    ratio = c.row("full thrust", "limits").metrics.position_rms_m[2] / c.row("full thrust", "split").metrics.position_rms_m[2]
+    ratio = (
+        c.row("full thrust", "limits").metrics.position_rms_m[2]
+        / c.row("full thrust", "split").metrics.position_rms_m[2]
+    )
     out.append(_below("full thrust: z RMS error, aware of the rotors' limits against not", ratio, 0.75))
     return out
 

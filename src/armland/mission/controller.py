@@ -4,7 +4,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from armland.control.coordinated import IMPLIED, arm_law, limit, parameters_layout, predict_attitude_torque, uav_law
+from armland.control.coordinated import (
+    IMPLIED,
+    arm_law,
+    limit,
+    parameters_layout,
+    predict_attitude_torque,
+    prove,
+    uav_law,
+)
 from armland.estimation.state import estimate_state, memory_layout, observe_disturbance, screen
 from armland.models.arm import ArmModel
 from armland.records import Flag, Record, Tick, layout
@@ -98,6 +106,7 @@ def coordinated_tick(
     predict_attitude_torque(p, t.estimate)
     observe_disturbance(t.measurement, p, memory, t.estimate)
     follow(path, t.measurement.tick, t.reference)
+    prove(t.estimate, t.reference, p, t.proof)
     r_ddot = uav_law(t.estimate, t.reference, p, path, t.command)
     arm_law(t.measurement, t.reference, p, arm, mu, r_ddot, t.command)
     limit(t.measurement, p, t.command, t.health)

@@ -159,8 +159,8 @@ def print_design(design: Design, as_json: bool) -> None:
         margins.add_column(Text(column), justify="left" if column == "loop" else "right")
     named = [("position", design.position), *zip(("roll", "pitch", "yaw"), design.attitude, strict=True)]
     for axis, m in named:
-        values = (np.rad2deg(m.phase), 1e3 * m.delay, m.gain_down, m.gain_up, m.sensitivity)
-        margins.add_row(axis, *(f"{v:.3g}" for v in values))
+        shown = (float(np.rad2deg(m.phase)), 1e3 * m.delay, m.gain_down, m.gain_up, m.sensitivity)
+        margins.add_row(axis, *(f"{v:.3g}" for v in shown))
     console.print(margins)
 
 
