@@ -193,3 +193,20 @@ def test_infeasible_gains_are_refused_with_what_would_work(args: tuple[str, ...]
     for word in words:
         assert word in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_verify_runs_the_proof(tmp_path: Path) -> None:
+    done = armland("verify", "--samples", "50", "--json", "--no-figures", "--out", str(tmp_path / "out"))
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    assert {"subsystem", "demonstrator", "verdicts"} <= set(result)
+    assert all(v["holds"] for v in result["verdicts"])
+    assert (tmp_path / "out" / "proof_E3.csv").is_file()
+
+
+@pytest.mark.parametrize("args", [("--samples", "0"), ("--scenario", "nowhere"), ("--seed", "-4")])
+def test_verify_refuses_bad_input(args: tuple[str, ...], tmp_path: Path) -> None:
+    done = armland("verify", *args, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()

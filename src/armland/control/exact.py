@@ -175,8 +175,10 @@ def exact_lyapunov(
     k3_attitude, k3_position = _k3(gains)
     spill = gains.k1 * gradient * gradient
     z2 = stacked(omega - alpha_omega, v - alpha_v)  # (21)
-    # z₁ᵀz₁ of the attitude block is (1 − |η_e|)² + |ε_e|² = 2(1 − |η_e|).
-    v1 = k3_attitude * (1.0 - abs(q_e[0])) + 0.5 * k3_position * (gradient[3:] @ gradient[3:])  # (19)
+    # z₁ᵀz₁ of the attitude block is also 2(1 − |η_e|), which loses its digits near the goal.
+    eta = 1.0 - abs(q_e[0])
+    attitude = eta * eta + 4.0 * (gradient[:3] @ gradient[:3])
+    v1 = 0.5 * k3_attitude * attitude + 0.5 * k3_position * (gradient[3:] @ gradient[3:])  # (19)
     v1_rate = -k3_attitude * spill[:3].sum() - k3_position * spill[3:].sum()
     return v1 + 0.5 * (z2 @ inertial(z2, uav)), v1_rate - z2 @ (gains.k2 * z2)  # (26), (30)
 
