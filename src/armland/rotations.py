@@ -27,6 +27,30 @@ def cross(a: Array, b: Array) -> Array:
 
 
 @njit(cache=True)
+def turned(R: Array, a: Array) -> Array:
+    """R a, (3,), of a matrix (3, 3) and a vector (3,): a tenth of what a call of BLAS costs at this size."""
+    return np.array(
+        [
+            R[0, 0] * a[0] + R[0, 1] * a[1] + R[0, 2] * a[2],
+            R[1, 0] * a[0] + R[1, 1] * a[1] + R[1, 2] * a[2],
+            R[2, 0] * a[0] + R[2, 1] * a[1] + R[2, 2] * a[2],
+        ]
+    )
+
+
+@njit(cache=True)
+def turned_back(R: Array, a: Array) -> Array:
+    """Rᵀ a, (3,), of a matrix (3, 3) and a vector (3,)."""
+    return np.array(
+        [
+            R[0, 0] * a[0] + R[1, 0] * a[1] + R[2, 0] * a[2],
+            R[0, 1] * a[0] + R[1, 1] * a[1] + R[2, 1] * a[2],
+            R[0, 2] * a[0] + R[1, 2] * a[1] + R[2, 2] * a[2],
+        ]
+    )
+
+
+@njit(cache=True)
 def skew(a: Array) -> Array:
     """S(a), (3, 3), with S(a) b = a × b."""
     return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])

@@ -31,7 +31,7 @@ from armland.control.impedance import elbow_field, orientation_pd, range_field
 from armland.control.limits import feasible, takeover
 from armland.models.operational import null_space_torque
 from armland.records import Flag, Record
-from armland.rotations import Array, cross, matrix
+from armland.rotations import Array, cross, matrix, turned, turned_back
 
 LAWS = ("classical", "paper", "exact")
 EXTRA_TORQUES = ("none", "full", "feedforward")
@@ -117,7 +117,7 @@ def uav_law(e: Record, r: Record, p: Record, path: Array, c: Record) -> Array:
         still = np.zeros(3)
         reference = Reference(r.quat, still, still, r.r, r.v, r.a)
         gains = ExactGains(p.k1, p.k2, p.k3_attitude, p.k3)
-        v_cm = e.v - R @ cross(e.omega, p.lever)
+        v_cm = e.v - turned(R, cross(e.omega, p.lever))
         delta_tau, force = exact_law(e.quat, e.omega, e.r, v_cm, reference, p.thrust, e.tau_att, uav, gains)  # (X.1)
         force = force - e.disturbance  # (X.3)
     else:
@@ -137,7 +137,9 @@ def uav_law(e: Record, r: Record, p: Record, path: Array, c: Record) -> Array:
         ahead = path[min(r.tick + p.preview, path.shape[0] - 1)]
         # The sensor knows the hinge's force whatever wind or model do; the tool behind it accelerates with the pivot.
         coming = e.hinge_force - p.tool_weight / GRAVITY * r.a + p.mass * (ahead[6:9] - r.a)
-        delta_tau = np.minimum(np.maximum(-cross(p.lever, R.T @ coming), -p.torque_limit), p.torque_limit)  # (X.6)
+        delta_tau = np.minimum(
+            np.maximum(-cross(p.lever, turned_back(R, coming)), -p.torque_limit), p.torque_limit
+        )  # (X.6)
     thrust = p.thrust
     if p.limited:
         # Roll and pitch come first; the thrust that they cost, and the torque that is lost all the same, the arm makes up for.
@@ -151,7 +153,7 @@ def uav_law(e: Record, r: Record, p: Record, path: Array, c: Record) -> Array:
         for i in range(3):
             r_ddot[i] = (force[i] + lift[i] + e.disturbance[i]) / p.mass
         r_ddot[2] -= GRAVITY
-        r_ddot += R @ cross(e.omega, cross(e.omega, p.lever))  # (X.2)
+        r_ddot += turned(R, cross(e.omega, cross(e.omega, p.lever)))  # (X.2)
     for i in range(3):
         c.force[i] = force[i]
         c.delta_tau[i] = delta_tau[i] if p.extra_torque else 0.0
@@ -165,7 +167,7 @@ def prove(e: Record, r: Record, p: Record, proof: Record) -> None:
     proof.tick = e.tick
     uav, still = UavParameters(p.mass, p.inertia, p.lever), np.zeros(3)
     if p.law == EXACT:
-        v_cm = e.v - matrix(e.quat) @ cross(e.omega, p.lever)
+        v_cm = e.v - turned(matrix(e.quat), cross(e.omega, p.lever))
         reference = Reference(r.quat, still, still, r.r, r.v, r.a)
         gains = ExactGains(p.k1, p.k2, p.k3_attitude, p.k3)
         proof.v2, proof.v2_rate = exact_lyapunov(e.quat, e.omega, e.r, v_cm, reference, uav, gains)  # (X.1)

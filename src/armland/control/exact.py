@@ -26,7 +26,7 @@ import numpy as np
 from numba import njit
 
 from armland.models.uav import GRAVITY
-from armland.rotations import Array, cross, error, matrix, sgn
+from armland.rotations import Array, cross, error, matrix, sgn, turned, turned_back
 
 
 class UavParameters(NamedTuple):
@@ -77,7 +77,7 @@ def stacked(rotation: Array, translation: Array) -> Array:
 @njit(cache=True)
 def drift(R: Array, omega: Array, thrust: float, tau_att: Array, uav: UavParameters) -> Array:
     """a_uav (6,), N·m in body axes and N in world axes: all that acts on the UAV except u. Source: (11), (13)."""
-    moment = tau_att - cross(omega, uav.inertia @ omega)
+    moment = tau_att - cross(omega, turned(uav.inertia, omega))
     lift = thrust * R[:, 2]
     return stacked(moment, np.array([lift[0], lift[1], lift[2] - uav.mass * GRAVITY]))  # (13)
 
@@ -85,14 +85,14 @@ def drift(R: Array, omega: Array, thrust: float, tau_att: Array, uav: UavParamet
 @njit(cache=True)
 def inertial(nu_dot: Array, uav: UavParameters) -> Array:
     """M_uav ν̇ (6,), N·m in body axes and N in world axes, of ν̇ (6,). Source: (13)."""
-    return stacked(uav.inertia @ nu_dot[:3], uav.mass * nu_dot[3:])  # (13)
+    return stacked(turned(uav.inertia, nu_dot[:3]), uav.mass * nu_dot[3:])  # (13)
 
 
 @njit(cache=True)
 def input_for(load: Array, R: Array, uav: UavParameters) -> tuple[Array, Array]:
     """u = B̄⁻¹ load: the (delta_tau, force) that puts `load` (6,) on the CM. Source: (13), inverted by hand."""
     force = load[3:]
-    return load[:3] - cross(uav.lever, R.T @ force), force  # (13)
+    return load[:3] - cross(uav.lever, turned_back(R, force)), force  # (13)
 
 
 @njit(cache=True)
@@ -108,10 +108,10 @@ def implied_acceleration(
     """
     R = matrix(q)
     load = drift(R, omega, thrust, tau_att, uav)
-    moment = load[:3] + delta_tau + cross(uav.lever, R.T @ force)
+    moment = load[:3] + delta_tau + cross(uav.lever, turned_back(R, force))
     omega_dot: Array = np.linalg.solve(uav.inertia, moment)  # type: ignore[assignment]  # (11)
     v_dot = (load[3:] + force) / uav.mass  # (11)
-    return v_dot + R @ (cross(omega, cross(omega, uav.lever)) + cross(omega_dot, uav.lever))  # (X.2)
+    return v_dot + turned(R, cross(omega, cross(omega, uav.lever)) + cross(omega_dot, uav.lever))  # (X.2)
 
 
 @njit(cache=True)
@@ -143,12 +143,12 @@ def exact_law(
     R, q_e, omega_d, gradient, alpha_omega, alpha_v = _targets(q, r, reference, uav, gains)
     omega_e = omega - omega_d
     half_s_eps_dot = 0.25 * sgn(q_e[0]) * (q_e[0] * omega_e + cross(q_e[1:], omega_e))
-    omega_dot_d = matrix(q_e).T @ reference.omega_dot_d
+    omega_dot_d = turned_back(matrix(q_e), reference.omega_dot_d)
     alpha_omega_dot = omega_dot_d - cross(omega_e, omega_d) - gains.k1[:3] * half_s_eps_dot  # (X.1)
-    r_dot = v + R @ cross(omega, uav.lever)
+    r_dot = v + turned(R, cross(omega, uav.lever))
     alpha_r_dot = reference.a_d + gains.k1[3:] * (reference.v_d - r_dot)
     turning = cross(omega, cross(uav.lever, alpha_omega)) + cross(uav.lever, alpha_omega_dot)
-    alpha_dot = stacked(alpha_omega_dot, alpha_r_dot + R @ turning)  # (X.1)
+    alpha_dot = stacked(alpha_omega_dot, alpha_r_dot + turned(R, turning))  # (X.1)
     z2 = stacked(omega - alpha_omega, v - alpha_v)  # (21)
     load = inertial(alpha_dot, uav) - gains.k2 * z2 - drift(R, omega, thrust, tau_att, uav)
     delta_tau, force = input_for(load, R, uav)
@@ -190,11 +190,11 @@ def _targets(
     """R, q_e, ω_d in body axes, Qᵀz₁, α_ω, α_v: what the law and its Lyapunov function share. Source: (X.1)."""
     R = matrix(q)
     q_e = error(reference.q_d, q)  # (15)
-    omega_d = matrix(q_e).T @ reference.omega_d
+    omega_d = turned_back(matrix(q_e), reference.omega_d)
     gradient = error_gradient(q_e, reference.r_d - r)
     alpha_omega = omega_d - gains.k1[:3] * gradient[:3]  # (X.1)
     alpha_r = reference.v_d - gains.k1[3:] * gradient[3:]
-    return R, q_e, omega_d, gradient, alpha_omega, alpha_r + R @ cross(uav.lever, alpha_omega)  # (X.1)
+    return R, q_e, omega_d, gradient, alpha_omega, alpha_r + turned(R, cross(uav.lever, alpha_omega))  # (X.1)
 
 
 @njit(cache=True)

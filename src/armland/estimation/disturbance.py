@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from armland.rotations import Array, cross, matrix
+from armland.rotations import Array, cross, matrix, turned, turned_back
 
 
 class ObserverParameters(NamedTuple):
@@ -107,11 +107,11 @@ def observe(
     force[2] -= p.mass * p.gravity
     linear = p.mass * v
     d_f = _learnt(memory.force, linear - memory.linear - force * p.period, p.period, p.force_bandwidth, p.force_limit)
-    impulse = memory.impulse + (torque + cross(p.lever, R.T @ hinge_force)) * p.period
+    impulse = memory.impulse + (torque + cross(p.lever, turned_back(R, hinge_force))) * p.period
     gathered = memory.gathered + p.period
     if elapsed <= 0.0:
         return d_f, memory.moment, ObserverMemory(d_f, memory.moment, linear, memory.omega, impulse, gathered)
-    before, after = p.inertia @ memory.omega, p.inertia @ omega
+    before, after = turned(p.inertia, memory.omega), turned(p.inertia, omega)
     gyroscopic = 0.5 * (cross(memory.omega, before) + cross(omega, after))
     # Samples may come at another pace than they were taken: the mean of what was known stands for the time between them.
     unknown = after - before + gyroscopic * elapsed - impulse * (elapsed / gathered)

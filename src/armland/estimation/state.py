@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from armland.estimation.disturbance import ObserverMemory, ObserverParameters, initial_observer, observe
 from armland.models.uav import GRAVITY
 from armland.records import Flag, Record
-from armland.rotations import Array, cross, matrix
+from armland.rotations import Array, cross, matrix, turned
 
 NON_FINITE = Flag.NON_FINITE
 
@@ -22,7 +22,8 @@ def memory_layout() -> np.dtype:
     """What the controller keeps from tick to tick: the disturbance observer's memory (X.3) and what was asked last."""
     vectors = ("d_force", "d_moment", "linear", "omega", "impulse", "force", "torque")
     return np.dtype(
-        [(name, "f8", (3,)) for name in vectors] + [("gathered", "f8"), ("uav_tick", "i8"), ("started", "i8")]
+        [(name, "f8", (3,)) for name in vectors]
+        + [("thrust", "f8"), ("gathered", "f8"), ("uav_tick", "i8"), ("started", "i8")]
     )
 
 
@@ -85,7 +86,7 @@ def observe_disturbance(m: Record, p: Record, memory: Record, e: Record) -> None
     """
     if p.observer == 0.0:
         return
-    v_cm = e.v - matrix(e.quat) @ cross(e.omega, p.lever)
+    v_cm = e.v - turned(matrix(e.quat), cross(e.omega, p.lever))
     limits = (p.force_limit, p.moment_limit)
     q = ObserverParameters(p.mass, p.inertia, p.lever, GRAVITY, p.tick_s, p.observer, p.observer, limits[0], limits[1])
     if memory.started:
@@ -99,7 +100,7 @@ def observe_disturbance(m: Record, p: Record, memory: Record, e: Record) -> None
             memory.gathered,
         )
         elapsed = (m.uav_tick - memory.uav_tick) * p.tick_s
-        _, _, new = observe(e.quat, e.omega, v_cm, p.thrust, memory.torque, memory.force, elapsed, q, kept)
+        _, _, new = observe(e.quat, e.omega, v_cm, memory.thrust, memory.torque, memory.force, elapsed, q, kept)
     else:
         new = initial_observer(e.omega, v_cm, q)
     memory.started = 1

@@ -17,8 +17,8 @@ SCALES = (1.0, 0.8, 1.2)
 DELAYS_MS = (0.0, 20.0, 40.0, 60.0)
 """Uplink delays of the sweep."""
 
-PUSH = {"force_n": (0.0, 2.0, 0.0), "torque_nm": (0.05, 0.0, 0.0)}
-"""Constant force and torque on the UAV."""
+PUSH = {"force_n": (0.0, 2.0, 0.0), "torque_nm": (-0.05, 0.0, 0.0)}
+"""Constant force and torque on the UAV; the torque adds to the one that the hinge makes of the force."""
 
 FULL_THRUST_N = 7.44
 """Total thrust at which the rotors have no room left for torque: four times the largest of one."""

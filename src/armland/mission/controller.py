@@ -110,6 +110,7 @@ def coordinated_tick(
     r_ddot = uav_law(t.estimate, t.reference, p, path, t.command)
     arm_law(t.measurement, t.reference, p, arm, mu, r_ddot, t.command)
     limit(t.measurement, p, t.command, t.health)
+    memory.thrust = t.command.thrust
     for i in range(3):
         memory.force[i] = t.command.force[i]
         memory.torque[i] = t.estimate.tau_att[i] + t.command.delta_tau[i]

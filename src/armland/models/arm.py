@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from armland.errors import ModelError
 from armland.models.description import EE_SITE, Tool, compile_spec, mark_end_effector, read_spec
 from armland.models.operational import operational_inertia
+from armland.records import Record
 
 Array = NDArray[np.float64]
 
@@ -74,9 +75,10 @@ class ArmModel:
         self._body = int(model.site_bodyid[model.site(EE_SITE).id])
         self._constants = _constants(model, self._body)
         d, site = self._data, model.site(EE_SITE).id
-        self._sources = (d.xaxis, d.xanchor, d.site_xpos[site], d.site_xmat[site], d.subtree_com, d.M)
         self.qpos: Array = d.qpos
         self.qvel: Array = d.qvel
+        pose = (d.site_xpos[site], d.site_xmat[site])
+        self._sources = (d.xaxis, d.xanchor, *pose, d.subtree_com, d.M, self._bias, self.qvel)
         self.update(np.clip(np.zeros(n), self.q_min, self.q_max), np.zeros(n))
 
     @classmethod
@@ -107,9 +109,10 @@ class ArmModel:
         mujoco.mj_kinematics(m, d)
         mujoco.mj_comPos(m, d)
         mujoco.mj_makeM(m, d)
-        _evaluate(*self._sources, self._constants, self.state)
         if velocity_terms:
-            _velocity_terms(self.bias, self.qvel, self._constants, self.state)
+            mujoco.mj_comVel(m, d)
+            mujoco.mj_rne(m, d, 0, self._bias)
+        _evaluate(*self._sources, velocity_terms, self._constants, self.state)
 
     @property
     def bias(self) -> Array:
@@ -226,6 +229,9 @@ def _evaluate(
     rotation: Array,
     subtree_com: Array,
     inertia: Array,
+    bias: Array,
+    qd: Array,
+    velocity_terms: bool,
     c_: NDArray[np.void],
     s_: NDArray[np.void],
 ) -> None:
@@ -261,13 +267,14 @@ def _evaluate(
             s.jacobian[0, i], s.jacobian[1, i], s.jacobian[2, i] = moves * a0, moves * a1, moves * a2
             s.jacobian[3, i], s.jacobian[4, i], s.jacobian[5, i] = 0.0, 0.0, 0.0
     operational_inertia(s.mass_matrix, s.jacobian, s.lambda_ee)
+    if velocity_terms:
+        _velocity_terms(bias, qd, c, s)
 
 
 @njit(cache=True)
-def _velocity_terms(bias: Array, qd: Array, c_: NDArray[np.void], s_: NDArray[np.void]) -> None:
+def _velocity_terms(bias: Array, qd: Array, c: Record, s: Record) -> None:
     # 𝒥̇ φ̇ is the end effector's acceleration with φ̈ = 0, carried from joint to joint along the chain. Written out:
     # every 3-vector would be an allocation.
-    c, s = c_[0], s_[0]
     w0 = w1 = w2 = b0 = b1 = b2 = a0 = a1 = a2 = 0.0
     n = qd.shape[0]
     for i in range(n + 1):
