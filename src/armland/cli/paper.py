@@ -1,27 +1,13 @@
-"""The command `armland`."""
+"""The commands around the paper: `paper`, its comparison of laws, `verify`, `gains`."""
 
 import json
-import os
-import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from armland import __version__
-from armland.errors import ArmlandError
-
-app = typer.Typer(
-    name="armland",
-    help="Simulates, proves, flies and judges the landing of a VTOL UAV that a robot arm catches and puts down.",
-    no_args_is_help=True,
-    add_completion=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode="markdown",
-)
+from armland.cli.console import announce_compilation, make_writable, progress_bar, reported
 
 PAPER_EPILOG = """**Examples**
 
@@ -35,7 +21,6 @@ PAPER_EPILOG = """**Examples**
 
 Exit code: 0 if all verdicts hold, 1 if one fails, 2 for bad input.
 """
-
 
 VERIFY_EPILOG = """**Examples**
 
@@ -55,25 +40,7 @@ GAINS_EPILOG = """**Examples**
 `armland gains --attitude 39 --over-link --delay-ms 30` is about what the published gains ask for, and is refused.
 """
 
-COMPILING = "Compiling the control laws: this happens once and takes less than a minute."
 
-
-def _version(show: bool) -> None:
-    if show:
-        print(f"armland {__version__}")
-        raise typer.Exit
-
-
-@app.callback()
-def root(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
-    ] = False,
-) -> None:
-    """Land a UAV with a robot arm."""
-
-
-@app.command(epilog=PAPER_EPILOG)
 def paper(
     scenario: Annotated[
         str, typer.Option(help="Scenario file (TOML), or the name of one that comes with armland.")
@@ -107,18 +74,17 @@ def paper(
     loaded = load_scenario(scenario, overrides)
     if compared:
         _compare(loaded, out, as_json, console)
-    if _compiles():
-        console.print(COMPILING, highlight=False)
+    announce_compilation(console)
     with console.status("Loading the laws and looking for a pose from which the arm reaches the whole path"):
         from armland.experiments.assembly import survey
         from armland.experiments.paper import run_experiments, warm_up
 
         workplace = survey(loaded)
         warm_up(loaded, workplace)
-    _writable(out)
+    make_writable(out)
     text = find(scenario).read_text(encoding="utf-8")
-    with _progress(console) as bar:
-        outcome = run_experiments(loaded, workplace, out, text, _reported(bar))
+    with progress_bar(console) as bar:
+        outcome = run_experiments(loaded, workplace, out, text, reported(bar))
     result = outcome.result()
     (out / "result.json").write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
     if figures:
@@ -135,13 +101,12 @@ def paper(
 
 
 def _compare(scenario: Any, out: Path, as_json: bool, console: Console) -> None:
-    if _compiles():
-        console.print(COMPILING, highlight=False)
+    announce_compilation(console)
     from armland.experiments.comparison import compare
     from armland.view.report import print_comparison
 
-    _writable(out)
-    with _progress(console) as bar:
+    make_writable(out)
+    with progress_bar(console) as bar:
         task = bar.add_task("laws compared", total=None)
         comparison = compare(
             scenario, lambda name, done, total: bar.update(task, completed=done, total=total, description=name)
@@ -155,7 +120,6 @@ def _compare(scenario: Any, out: Path, as_json: bool, console: Console) -> None:
     raise typer.Exit(0 if all(v.holds for v in comparison.verdicts) else 1)
 
 
-@app.command(epilog=VERIFY_EPILOG)
 def verify(
     samples: Annotated[int, typer.Option(min=1, help="Random initial states of the UAV subsystem.")] = 10_000,
     scenario: Annotated[
@@ -171,17 +135,16 @@ def verify(
 
     console = Console(stderr=True)
     loaded = load_scenario(scenario, {} if seed is None else {"run": {"seed": seed}})
-    if _compiles("experiments", "paths.survey_paths"):
-        console.print(COMPILING, highlight=False)
+    announce_compilation(console, "experiments", "paths.survey_paths")
     from armland.experiments.assembly import survey
     from armland.experiments.ledger import save_channels
     from armland.experiments.verification import prove
     from armland.view.proof_table import print_proof
 
     workplace = survey(loaded)
-    _writable(out)
-    with _progress(console) as bar:
-        report = _reported(bar)
+    make_writable(out)
+    with progress_bar(console) as bar:
+        report = reported(bar)
         proof = prove(loaded, workplace, samples, out, find(scenario).read_text(encoding="utf-8"), report)
     result = proof.result()
     (out / "result.json").write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
@@ -198,7 +161,6 @@ def verify(
     raise typer.Exit(0 if proof.holds else 1)
 
 
-@app.command(epilog=GAINS_EPILOG)
 def gains(
     position: Annotated[float, typer.Option(help="Bandwidth of the position, rad/s.")] = 40.0,
     position_damping: Annotated[float, typer.Option(help="Its damping ratio.")] = 1.0,
@@ -227,88 +189,3 @@ def gains(
         attitude_damping=attitude_damping,
     )
     print_design(designed(loaded, poles, on_board), as_json)
-
-
-@app.command()
-def detector(
-    per_distance: Annotated[int, typer.Option(min=1, help="Images at each distance.")] = 16,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of poses and image noise.")] = 0,
-    out: Annotated[Path, typer.Option(help="Folder for figure, demo image and table.")] = Path("out/detector"),
-    as_json: Annotated[bool, typer.Option("--json", help="Print the table as plain data.")] = False,
-) -> None:
-    """Detect a fiducial marker on rendered images: pose error against distance, beside the camera's measurement model."""
-    import math
-
-    from armland.view.marker_figures import draw_marker_demo, draw_marker_figure, table
-    from armland.view.marker_study import DISTANCES_M, marker_study
-
-    _writable(out)
-    with Console(stderr=True).status("Rendering and detecting"):
-        study = marker_study(DISTANCES_M, per_distance, seed)
-        draw_marker_figure(out, study)
-        draw_marker_demo(out)
-    rows = [
-        {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in r._asdict().items()} for r in study.rows
-    ]
-    (out / "detector.json").write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
-    print(json.dumps(rows, indent=2) if as_json else table(study.rows))
-
-
-@app.command()
-def schema() -> None:
-    """Print the JSON schema of a scenario file, for editors that complete and check TOML."""
-    from armland.config import schema as text
-
-    print(text())
-
-
-def _progress(console: Console) -> Progress:
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        console=console,
-        transient=True,
-    )
-
-
-def _reported(bar: Progress) -> Callable[[str, int, int], None]:
-    # One bar per name, made when the name is first heard of.
-    tasks: dict[str, Any] = {}
-
-    def report(name: str, done: int, total: int) -> None:
-        if name not in tasks:
-            tasks[name] = bar.add_task(name, total=total)
-        bar.update(tasks[name], completed=done, total=total)
-
-    return report
-
-
-def _compiles(part: str = "mission", function: str = "controller.coordinated_tick") -> bool:
-    # Numba keeps compiled laws beside their source; none there means this start compiles them.
-    folder = Path(__file__).parent / part / "__pycache__"
-    return os.environ.get("NUMBA_DISABLE_JIT") != "1" and not any(folder.glob(f"{function}-*.nbc"))
-
-
-def _writable(out: Path) -> None:
-    from armland.errors import ConfigurationError
-
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as e:
-        raise ConfigurationError(f"--out {str(out)!r} cannot be made a folder: {e.strerror}") from e
-    if not os.access(out, os.W_OK):
-        raise ConfigurationError(f"--out {str(out)!r} is not writable")
-
-
-def main() -> None:
-    """Run the command; what armland refuses becomes one message and exit code 2."""
-    try:
-        app()
-    except ArmlandError as e:
-        print(f"armland: {e}", file=sys.stderr)
-        sys.exit(2)
-    except KeyboardInterrupt:
-        print("armland: interrupted; what was recorded so far is on disk", file=sys.stderr)
-        sys.exit(130)

@@ -1,0 +1,60 @@
+"""What the commands share: progress bars, folders, and whether a start compiles."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+from armland.errors import ConfigurationError
+
+COMPILING = "Compiling the control laws: this happens once and takes less than a minute."
+
+
+def announce_compilation(
+    console: Console, part: str = "mission", function: str = "controller.coordinated_tick"
+) -> None:
+    """Say so where this start compiles the laws: Numba keeps them beside their source, and none is there yet."""
+    folder = Path(__file__).parents[1] / part / "__pycache__"
+    if os.environ.get("NUMBA_DISABLE_JIT") != "1" and not any(folder.glob(f"{function}-*.nbc")):
+        console.print(COMPILING, highlight=False)
+
+
+def progress_bar(console: Console) -> Progress:
+    """Bars that vanish when they are done."""
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        console=console,
+        transient=True,
+    )
+
+
+def reported(bar: Progress) -> Callable[[str, int, int], None]:
+    """A progress callback that makes one bar per name, when the name is first heard of."""
+    tasks: dict[str, Any] = {}
+
+    def report(name: str, done: int, total: int) -> None:
+        if name not in tasks:
+            tasks[name] = bar.add_task(name, total=total)
+        bar.update(tasks[name], completed=done, total=total)
+
+    return report
+
+
+def make_writable(out: Path) -> None:
+    """Make the output folder; refuse what cannot be one.
+
+    Raises:
+        ConfigurationError: it is a file, or not writable.
+    """
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as e:
+        raise ConfigurationError(f"--out {str(out)!r} cannot be made a folder: {e.strerror}") from e
+    if not os.access(out, os.W_OK):
+        raise ConfigurationError(f"--out {str(out)!r} is not writable")

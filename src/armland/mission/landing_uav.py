@@ -1,0 +1,128 @@
+"""The UAV's part of a landing, as the ground sees it: station keeping, thrust ramp, and which command acts by now; compiled.
+
+| symbol | name | unit |
+|---|---|---|
+| f_T | `memory.thrust` as commanded, `memory.acting` as it acts | N |
+| T_h | `memory.hover`: the command that carries the weight, learnt while the UAV keeps its station | N |
+| F | `estimate.hinge_force` (3,) | N, world |
+
+Hand-over: the thrust ramps between shares of T_h. On the way down it waits while the hinge's force is behind what the
+missing thrust must leave to the arm: a UAV that nobody carries is not let down.
+"""
+
+import numpy as np
+from numba import njit
+
+from armland.control.station_keeping import StationGains, StationReference, keep_station
+from armland.mission.landing_state import RING
+from armland.mission.phases import LINK, UAV
+from armland.mission.records import UavMode
+from armland.records import Record
+from armland.rotations import Array, conjugate, cross, matrix, multiply
+
+AUTONOMOUS, STATION, LEVEL, RAMP, BALANCE, OFF = range(len(UAV))
+MODE_AUTONOMOUS, MODE_OFF = UavMode.AUTONOMOUS, UavMode.OFF
+MODES = (UavMode.GUIDED, UavMode.HELD, UavMode.LANDED)
+"""By index into `phases.LINK`."""
+HELD = LINK.index("held")
+
+BALANCE_RATE = 1.5
+"""N/s of thrust per N of hinge force while the hinge is freed of force."""
+
+HOVER_S = 1.0
+"""Time constant with which T_h follows the station keeping, s."""
+
+
+@njit(cache=True)
+def thrust_in_force(tick: int, p: Record, s: Record) -> float:
+    """Thrust that acts now as far as the ground knows: the command of one uplink ago behind the rotors' lag, N."""
+    s.acting += p.rotor_gain * (s.thrust_log[(tick - p.uplink) % RING] - s.acting)
+    return float(s.acting)
+
+
+@njit(cache=True)
+def command_uav(
+    tick: int, what: int, share: float, link: int, align: Array, e: Record, p: Record, s: Record, c: Record
+) -> None:
+    """Fill mode, attitude set-point and thrust of the command.
+
+    Args:
+        tick: present tick.
+        what: index into `UAV`.
+        share: of the weight that the rotors shall carry at the end of a ramp.
+        link: index into `LINK`.
+        align: δ (4,), q_wb = δ ⊗ q_imu: set-points travel in the UAV's own idea of the world.
+        e: estimate.
+        p: parameters.
+        s: memory.
+        c: command, written.
+    """
+    c.uav_mode = MODES[link]
+    if what == AUTONOMOUS or (what == STATION and not e.plate_valid):
+        c.uav_mode = MODE_AUTONOMOUS
+        s.thrust = s.hover
+        _level(p, s)
+    elif what == STATION:
+        if tick % p.station_period == 0:
+            _keep(e, p, s)
+    elif what == RAMP:
+        _ramp(share * s.hover, link == HELD, e, p, s)
+        _level(p, s)
+        if share == 0.0 and s.thrust <= p.thrust_min:
+            s.thrust, c.uav_mode = 0.0, MODE_OFF
+    elif what == BALANCE:
+        step = min(max(BALANCE_RATE * e.hinge_force[2], -p.thrust_rate), p.thrust_rate) * p.tick_s
+        s.thrust = min(max(s.thrust + step, p.thrust_min), p.thrust_max)
+        s.hover = s.thrust
+        # What carries the weight now is where the station keeping takes over.
+        s.integral[0] = s.integral[1] = 0.0
+        s.integral[2] = s.thrust / p.mass - 9.81
+        _level(p, s)
+    elif what == OFF:
+        s.thrust, c.uav_mode = 0.0, MODE_OFF
+    quat = multiply(conjugate(align), s.q_d)
+    for i in range(4):
+        c.uav_quat[i] = quat[i]
+    c.thrust = s.thrust
+    s.thrust_log[tick % RING] = s.thrust
+
+
+@njit(cache=True)
+def _level(p: Record, s: Record) -> None:
+    s.q_d[0], s.q_d[1], s.q_d[2], s.q_d[3] = np.cos(0.5 * p.heading), 0.0, 0.0, np.sin(0.5 * p.heading)
+
+
+@njit(cache=True)
+def _keep(e: Record, p: Record, s: Record) -> None:
+    R = matrix(e.quat)
+    position = e.plate - R @ p.lever
+    velocity = e.plate_v - R @ cross(e.omega, p.lever)
+    period = p.station_period * p.tick_s
+    gains = StationGains(p.mass, 9.81, period, 1.2, 3.0, 1.2, 0.3, 3.0, 0.3, p.thrust_min, p.thrust_max)
+    still = np.zeros(3)
+    reference = StationReference(p.station - p.lever, still, still, p.heading)
+    thrust, q_d, integral = keep_station(position, velocity, e.quat, reference, still, gains, s.integral.copy())
+    s.thrust = thrust
+    for i in range(3):
+        s.integral[i] = integral[i]
+    for i in range(4):
+        s.q_d[i] = q_d[i]
+    s.hover += period / HOVER_S * (p.mass * (9.81 + integral[2]) - s.hover)
+
+
+@njit(cache=True)
+def _ramp(target: float, held: bool, e: Record, p: Record, s: Record) -> None:
+    step = p.thrust_rate * p.tick_s
+    if held and target < s.thrust:
+        # By now the arm must carry what the rotors no longer do.
+        expected = p.weight * (1.0 - e.thrust / max(s.hover, 1e-3))
+        step *= min(max(1.0 - (expected - e.hinge_force[2]) / p.force_slack, 0.0), 1.0)
+    s.thrust += min(max(target - s.thrust, -step), step)
+
+
+@njit(cache=True)
+def land_rotors(s: Record) -> None:
+    """Begin a mission on the cradle: no thrust acts."""
+    s.thrust = s.acting = 0.0
+    for i in range(RING):
+        s.thrust_log[i] = 0.0

@@ -1,0 +1,146 @@
+"""Whole landings and take-offs, with faults in their phases; each fault's negative control is the landing without it."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from armland.experiments.landing import LandingOutcome, campaign, fly_landing, fly_takeoff
+from armland.mission.landing_scenario import landing_scenario
+
+KEYS = {
+    "success",
+    "reason",
+    "phases",
+    "retries",
+    "capture",
+    "touchdown",
+    "hinge_force_max_n",
+    "joint_torque_max_ratio",
+    "limits_violated",
+    "real_time_factor",
+}
+
+
+@cache
+def landed() -> LandingOutcome:
+    return fly_landing(landing_scenario(), 1)
+
+
+def faulty(kind, phase, **more):
+    fault = {"kind": kind, "phase": phase, "after_s": 0.05, **more}
+    return fly_landing(landing_scenario("landing", {"faults": [fault]}), 1)
+
+
+def test_lands():
+    outcome = landed()
+    assert outcome.success, outcome.reason
+    assert outcome.state == "standing"
+    assert outcome.touchdown["speed_mps"] <= 0.15
+    assert outcome.touchdown["tilt_deg"] <= 3.0
+    assert outcome.touchdown["offset_m"] <= 0.010
+    assert outcome.hinge_force_max_n <= 0.6 * 177.0
+    assert outcome.capture["offset_m"] < 0.007
+
+
+def test_result_has_the_promised_keys():
+    result = landed().result()
+    assert set(result) >= KEYS
+    assert set(result["capture"]) == {"offset_m", "relative_speed_mps", "tilt_deg"}
+    assert set(result["touchdown"]) == {"speed_mps", "tilt_deg", "offset_m"}
+    times = [(p["start_s"], p["end_s"]) for p in result["phases"]]
+    assert [a for a, _ in times[1:]] == [b for _, b in times[:-1]]
+
+
+def test_same_seed_lands_bit_for_bit_the_same():
+    again = fly_landing(landing_scenario(), 1)
+    assert again.records.tobytes() == landed().records.tobytes()
+
+
+def test_ideal_sensors_place_it_more_exactly():
+    ideal = {
+        "camera": False,
+        "noise": False,
+        "force_bias_n": 0.0,
+        "torque_bias_nm": 0.0,
+        "heading_error_deg": 0.0,
+        "tilt_error_deg": 0.0,
+        "thrust_error": 0.0,
+        "hover_noise_m": 0.0,
+    }
+    outcome = fly_landing(landing_scenario("landing", {"imperfections": ideal}), 1)
+    assert outcome.success, outcome.reason
+    assert outcome.touchdown["offset_m"] < 5e-4
+
+
+def test_takes_off():
+    outcome = fly_takeoff(landing_scenario(), 1)
+    assert outcome.success, outcome.reason
+    assert outcome.state == "flying"
+    assert outcome.release["hinge_force_n"] < 1.0
+    assert outcome.release["drop_m"] < 0.02
+
+
+@pytest.mark.parametrize(
+    ("kind", "phase", "more", "end", "state"),
+    [
+        ("link_loss", "carry", {}, "holding", "held"),
+        ("camera_frozen", "align", {}, "abort", "flying"),
+        ("magnet_slip", "close", {"size": 1.0}, "abort", "flying"),
+        ("arm_stale", "set_down", {}, "braked_held", "held"),
+    ],
+)
+def test_fault_ends_in_its_safe_state(kind, phase, more, end, state):
+    outcome = faulty(kind, phase, **more)
+    assert (outcome.end, outcome.state, outcome.success) == (end, state, False)
+    assert landed().success
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "phase", "more", "end", "state"),
+    [
+        *(("link_loss", phase, {}, "abort", "flying") for phase in ("guide", "align", "close")),
+        *(("link_loss", phase, {}, "holding", "held") for phase in ("hand_over", "set_down")),
+        *(("downlink_loss", phase, {}, "holding", "held") for phase in ("hand_over", "carry", "set_down")),
+        *(("camera_lost", phase, {}, "abort", "flying") for phase in ("guide", "align")),
+        *(("camera_lost", phase, {}, "done", "standing") for phase in ("hand_over", "carry", "set_down")),
+        *(("wrench_frozen", phase, {}, "abort", "flying") for phase in ("guide", "align", "close")),
+        *(("wrench_frozen", phase, {}, "holding", "held") for phase in ("hand_over", "carry", "set_down")),
+        ("wrench_frozen", "unload", {}, "secured", "standing"),
+        *(("wrench_drift", phase, {"size": 6.0}, "holding", "held") for phase in ("hand_over", "carry")),
+        *(("arm_stale", phase, {}, "braked_free", "flying") for phase in ("guide", "align", "close")),
+        *(("arm_stale", phase, {}, "braked_held", "held") for phase in ("hand_over", "carry")),
+        ("arm_stale", "unload", {}, "braked_down", "standing"),
+        *(("magnet_coil", phase, {"size": 0.5}, "abort", "flying") for phase in ("align", "close")),
+        *(("magnet_coil", phase, {"size": 0.5}, "holding", "held") for phase in ("hand_over", "carry", "set_down")),
+        ("magnet_slip", "hand_over", {"size": 1.0}, "let_fly", "flying"),
+        *(("overload", phase, {"size": 115.0, "lasts_s": 0.05}, "holding", "held") for phase in ("hand_over", "carry")),
+        *(("unreachable", phase, {"size": 0.5}, "abort", "flying") for phase in ("guide", "align", "close")),
+        *(("rotor_loss", phase, {"size": 0.2}, "done", "standing") for phase in ("guide", "close", "carry")),
+    ],
+)
+def test_every_fault_ends_in_its_safe_state(kind, phase, more, end, state):
+    outcome = faulty(kind, phase, **more)
+    assert (outcome.end, outcome.state) == (end, state)
+
+
+def test_magnet_that_fails_its_self_test_is_refused():
+    outcome = fly_landing(landing_scenario("landing", {"faults": [{"kind": "magnet_coil", "size": 0.5}]}), 1)
+    assert (outcome.end, outcome.state) == ("refused", "flying")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mission", ["landing", "takeoff"])
+def test_seeds_succeed(mission):
+    outcomes = campaign(landing_scenario(), range(100, 120), mission)
+    assert [(o.seed, o.reason) for o in outcomes if not o.success] == []
+    assert len({round(o.phases[1].end_s, 3) for o in outcomes}) > 5 or mission == "takeoff"
+
+
+def test_thrust_leaves_the_rotors_only_as_the_hinge_takes_over():
+    records, names = landed().records, [p.name for p in landed().phases]
+    phase = records["mission"]["phase"]
+    over = records[phase == phase[np.flatnonzero(np.diff(phase))[names.index("carry") - 1]]]
+    carried = over["truth"]["hinge_force"][:, 2] + over["truth"]["rotor_thrust"].sum(axis=1)
+    assert carried.min() > 0.8 * 0.48 * 9.81

@@ -1,0 +1,193 @@
+"""The supervisor: fault table, signs of faults with their debouncing, and limits that only take away."""
+
+import numpy as np
+import pytest
+
+from armland.mission.finals import FINALS
+from armland.mission.landing_procedure import LANDING
+from armland.mission.landing_state import memory_layout, parameters_layout
+from armland.mission.records import Limit, landing_layout
+from armland.mission.supervisor import (
+    DEBOUNCE_TICKS,
+    FAULT_TABLE,
+    FAULTS,
+    KINDS,
+    fault_rows,
+    find_fault,
+    limit,
+)
+from armland.mission.takeoff_procedure import TAKEOFF
+
+JOINTS = 7
+DEBOUNCE = np.array(DEBOUNCE_TICKS, np.int64)
+ALL = np.zeros(len(FAULTS), np.int64)
+
+
+class Bench:
+    """Records of a healthy moment at tick 1000."""
+
+    def __init__(self):
+        self.p = np.zeros(1, parameters_layout(JOINTS, 4))
+        self.s = np.zeros(1, memory_layout(JOINTS))
+        self.m, self.e, self.c, self.h = (
+            np.zeros(1, landing_layout(name, JOINTS)) for name in ("measurement", "estimate", "command", "health")
+        )
+        p = self.p
+        p["tick_s"], p["tau_max"], p["qd_max"], p["q_min"], p["q_max"] = 1e-3, 100.0, 2.0, -2.0, 2.0
+        p["torque_rate"], p["speed_share"], p["joint_margin"], p["sigma_min"] = 1500.0, 0.9, 0.02, 0.03
+        p["uav_age"], p["camera_age"], p["arm_age"], p["wrench_age"] = 250, 0.5, 5, 20
+        p["hinge_max"], p["tilt_max"], p["slip"], p["free_tolerance"] = 106.0, np.deg2rad(30.0), 0.02, 2.5
+        for name in ("tick", "arm_tick", "wrench_tick", "uav_tick"):
+            self.m[name] = 1000
+        self.e["quat"][0, 0], self.e["plate_valid"], self.h["joint_margin"] = 1.0, 1, 1.0
+        self.s["sigma"], self.s["seen"], self.s["started"] = 0.2, 1, 1
+
+    def find(self, ticks=1, matters=ALL, bad=0, expected=np.nan, magnet_on=False):
+        for _ in range(ticks):
+            fault = find_fault(
+                bad, magnet_on, expected, self.m[0], self.e[0], self.h[0], self.p[0], self.s[0], DEBOUNCE, matters
+            )
+        return FAULTS[fault]
+
+    def limited(self, tau):
+        self.c["tau"] = tau
+        limit(0, np.zeros(JOINTS), self.m[0], self.e[0], self.p[0], self.s[0], self.c[0], self.h[0])
+        return self.c["tau"][0], int(self.h["flags"][0])
+
+
+@pytest.fixture
+def bench():
+    return Bench()
+
+
+def provoke(bench, fault):
+    """Let the sign of a fault show; returns the arguments of `find`."""
+    match fault:
+        case "non_finite":
+            return {"bad": 1}
+        case "arm_stale":
+            bench.m["arm_tick"] = 990
+        case "uav_silent":
+            bench.m["uav_tick"] = 700
+        case "camera_stale":
+            bench.e["plate_age"] = 0.6
+        case "wrench_stale":
+            bench.m["wrench_tick"] = 970
+        case "wrench_drift":
+            bench.e["hinge_force"][0, 2] = 5.0
+            return {"expected": 2.0}
+        case "magnet_coil":
+            bench.m["magnet_fault"] = 1
+            return {"magnet_on": True}
+        case "overload":
+            bench.e["hinge_force"][0, 0] = 107.0
+        case "uav_tilt":
+            bench.e["quat"][0] = [np.cos(0.3), np.sin(0.3), 0.0, 0.0]
+        case "slip":
+            bench.e["plate"][0, 1] = 0.025
+        case "near_limit":
+            bench.s["sigma"] = 0.02
+    return {}
+
+
+def test_table_has_every_fault_and_every_kind_and_leads_to_ends_only():
+    ends = {p.name for p in FINALS if p.name != "done"} | {"-"}
+    assert set(FAULT_TABLE) == set(FAULTS[1:])
+    for row in FAULT_TABLE.values():
+        assert set(row) == set(KINDS)
+        assert set(row.values()) <= ends
+
+
+@pytest.mark.parametrize("phases", [LANDING, TAKEOFF])
+def test_every_phase_has_a_row(phases):
+    rows = fault_rows(tuple("" if p.final else p.kind for p in phases), tuple(p.name for p in phases))
+    for k, phase in enumerate(phases):
+        assert phase.final == bool((rows[1:, k] < 0).all())
+        assert phase.final or phase.kind in KINDS
+
+
+def test_no_end_lets_a_held_uav_go_without_its_thrust():
+    for fault, row in FAULT_TABLE.items():
+        end = next((p for p in FINALS if p.name == row["held"]), None)
+        assert end is None or end.magnet == "on" or end.uav == "autonomous", fault
+
+
+def test_no_end_stops_a_flying_uav():
+    for fault, row in FAULT_TABLE.items():
+        end = next((p for p in FINALS if p.name == row["flight"]), None)
+        assert end is None or end.uav == "autonomous", fault
+
+
+def test_no_end_leaves_the_arm_without_stiffness():
+    for end in FINALS:
+        assert end.arm in ("hold", "back_off", "yield", "brake")
+
+
+def test_healthy_moment_has_no_fault(bench):
+    assert bench.find(1000) == "none"
+
+
+@pytest.mark.parametrize("fault", FAULTS[1:])
+def test_fault_is_found_after_its_debouncing_and_not_before(bench, fault):
+    arguments = provoke(bench, fault)
+    needed = DEBOUNCE_TICKS[FAULTS.index(fault)]
+    assert needed == 1 or bench.find(needed - 1, **arguments) == "none"
+    assert bench.find(1, **arguments) == fault
+
+
+@pytest.mark.parametrize("fault", FAULTS[1:])
+def test_fault_that_does_not_matter_is_let_pass(bench, fault):
+    matters = ALL.copy()
+    matters[FAULTS.index(fault)] = -1
+    assert bench.find(1000, matters, **provoke(bench, fault)) == "none"
+
+
+def test_sign_that_goes_away_is_forgotten(bench):
+    bench.e["hinge_force"][0, 0] = 107.0
+    assert bench.find(2) == "none"
+    bench.e["hinge_force"][0, 0] = 0.0
+    bench.find(1)
+    bench.e["hinge_force"][0, 0] = 107.0
+    assert bench.find(2) == "none"
+
+
+def test_torque_within_all_limits_is_not_touched(bench):
+    tau, flags = bench.limited(np.full(JOINTS, 1.0))
+    np.testing.assert_array_equal(tau, 1.0)
+    assert flags == 0
+
+
+def test_torque_cannot_jump_and_arrives_in_time(bench):
+    tau, flags = bench.limited(np.full(JOINTS, 50.0))
+    np.testing.assert_allclose(tau, 1.5)
+    assert flags == Limit.TORQUE_RATE
+    for _ in range(40):
+        tau, _ = bench.limited(np.full(JOINTS, 50.0))
+    np.testing.assert_allclose(tau, 50.0)
+
+
+def test_torque_stays_below_its_limit(bench):
+    bench.s["tau"] = 99.5
+    tau, flags = bench.limited(np.full(JOINTS, 200.0))
+    np.testing.assert_allclose(tau, 100.0)
+    assert flags == Limit.JOINT_TORQUE
+    assert bench.h["torque_ratio"][0] == 2.0
+
+
+@pytest.mark.parametrize(("speed", "cut"), [(1.9, True), (-1.9, True), (1.7, False)])
+def test_fast_joint_is_damped(bench, speed, cut):
+    bench.m["qd"][0, 2] = speed
+    tau, flags = bench.limited(np.zeros(JOINTS))
+    assert bool(flags & Limit.JOINT_SPEED) == cut
+    assert (tau[2] * speed < 0.0) == cut
+
+
+@pytest.mark.parametrize(
+    ("q", "tau", "allowed"), [(1.995, 1.0, False), (1.995, -1.0, True), (-1.995, -1.0, False), (1.9, 1.0, True)]
+)
+def test_joint_at_its_end_is_driven_back_only(bench, q, tau, allowed):
+    bench.m["q"][0, 3] = q
+    bench.m["qd"][0, 3] = 0.05 * np.sign(tau)
+    given, flags = bench.limited(np.full(JOINTS, tau))
+    assert bool(flags & Limit.JOINT_POSITION) == (abs(q) > 1.98)
+    assert (given[3] == tau) == allowed
