@@ -15,8 +15,8 @@ from armland.experiments.assembly import Assembly, assemble, survey
 from armland.runtime.loop import run_loop
 from armland.runtime.recorder import Recorder
 
-ROUNDS = 12
-STEPS = 3000
+ROUNDS = 8
+STEPS = 14500
 
 
 def bare(assembly: Assembly) -> float:

@@ -73,7 +73,13 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
     ),
     "proof": (
         _TICK,
-        Field("v2", (), "J", "-", "Lyapunov function V₂ (26) of the law in use, as its estimate has it"),
+        Field(
+            "v2",
+            (),
+            "J",
+            "-",
+            "Lyapunov function V₂ (26) of the law in use, as its estimate had it at `tick`; every fifth tick",
+        ),
         Field("v2_rate", (), "W", "-", "rate of V₂ that the proof promises (30)"),
     ),
     "truth": (

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from scipy.linalg import cho_factor, cho_solve
 
-from armland.models.operational import PIVOT_THRESHOLD, cholesky, null_space_torque, operational_inertia
+from armland.models.operational import (
+    PIVOT_THRESHOLD,
+    cholesky,
+    null_space_torque,
+    operational_inertia,
+    smallest_singular_value,
+)
 
 
 def random_definite(rng, n):
@@ -155,3 +161,12 @@ def test_arm_of_six_joints_has_no_null_space(bench, states):
         np.testing.assert_allclose(null_space_torque(np.ones(6), M, J, arm.lambda_ee), 0.0, atol=1e-9)
         tried += 1
     assert tried >= 3
+
+
+def test_smallest_singular_value_against_a_decomposition() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(200):
+        J = rng.normal(size=(6, 7)) * rng.uniform(0.05, 2.0, size=(6, 1))
+        exact = np.linalg.svd(J, compute_uv=False)[-1]
+        assert exact * (1.0 - 1e-12) <= smallest_singular_value(J) <= exact * 1.02
+    assert smallest_singular_value(np.zeros((6, 7))) == 0.0
