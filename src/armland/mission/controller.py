@@ -61,9 +61,9 @@ class CoordinatedController:
         screen(tick.buffer, self._good, arm.qpos, arm.qvel)
         arm.refresh(self._velocity_terms)
         if self._calls % SINGULARITY_PERIOD == 0:
-            self._sigma_min = smallest_singular_value(arm.jacobian)
+            # The message keeps it until the next time.
+            tick.health["sigma_min"] = self._sigma_min = smallest_singular_value(arm.jacobian)
         self._calls += 1
-        tick.health["sigma_min"] = self._sigma_min
         if self._sigma_min < SINGULAR_BELOW:
             tick.health["flags"] |= Flag.NEAR_SINGULAR
         if self._coriolis:
