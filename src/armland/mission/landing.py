@@ -5,7 +5,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from armland.mission.landing_arm import BRAKE, JOIN, arm_torque, begin_reference, held_force, refer, track
-from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, screened, tilt_of
+from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, tilt_of
 from armland.mission.landing_uav import AUTONOMOUS, LEVEL, STATION, command_uav, thrust_in_force
 from armland.mission.phases import MAGNET, SIGNAL, SIGNALS, next_phase
 from armland.mission.supervisor import find_fault, limit
@@ -120,7 +120,7 @@ def landing_tick(
     p_: NDArray[np.void],
     s_: NDArray[np.void],
     arm_: NDArray[np.void],
-    good: NDArray[np.void],
+    bad: int,
     sample: NDArray[np.void],
     filter_p: NDArray[np.void],
     filter_s: NDArray[np.void],
@@ -146,7 +146,7 @@ def landing_tick(
         p_: `landing_state.parameters_layout`.
         s_: `landing_state.memory_layout`.
         arm_: arm model's state at the measurement's joints.
-        good: last good measurement.
+        bad: numbers in the measurement that were not finite, and are replaced.
         sample: camera sample for the pose filter.
         filter_p: pose filter's parameters.
         filter_s: its memory.
@@ -168,7 +168,6 @@ def landing_tick(
     t, p, s, arm = tick[0], p_[0], s_[0], arm_[0]
     m, e, c = t.measurement, t.estimate, t.command
     now = m.tick
-    bad = screened(m, good[0])
     row = phases[s.phase]
     held = row.held == 1
     # Estimate.

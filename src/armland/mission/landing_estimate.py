@@ -140,6 +140,16 @@ def estimate_load(
 
 
 @njit(cache=True)
+def admit(measurement: NDArray[np.void], good: NDArray[np.void], qpos: Array, qvel: Array) -> int:
+    """Screen a `measurement` (1,) and hand its joints (n,) to the arm model; returns how many numbers were not finite."""
+    m = measurement[0]
+    bad = screened(m, good[0])
+    for i in range(qpos.shape[0]):
+        qpos[i], qvel[i] = m.q[i], m.qd[i]
+    return bad
+
+
+@njit(cache=True)
 def screened(m: Record, good: Record) -> int:
     """Replace what is not finite in the measurement by the last good value; returns how many numbers that were."""
     bad = _kept(m.q, good.q) + _kept(m.qd, good.qd) + _kept(m.wrench, good.wrench)

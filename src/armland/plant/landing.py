@@ -11,19 +11,17 @@ from armland.mission.landing_scenario import LandingScenario
 from armland.mission.records import LandingTick, UavMode
 from armland.mission.takeoff_procedure import TAKEOFF
 from armland.models.uav import mixer
-from armland.plant.camera import NOISE_WIDTH, SAMPLE, Camera, camera_parameters, observe
+from armland.plant.camera import NOISE_WIDTH, SAMPLE, Camera, camera_parameters
 from armland.plant.camera import STATE as CAMERA_STATE
-from armland.plant.landing_devices import ADDRESSES, PARAMETERS, SENSORS, STATE, actuate, sense
+from armland.plant.landing_cycle import BRAKE, NOT_FINITE, act, sample
+from armland.plant.landing_devices import ADDRESSES, PARAMETERS, SENSORS, STATE
 from armland.plant.landing_faults import FaultSchedule
 from armland.plant.landing_onboard import RING
 from armland.plant.landing_scene import PLATE, LandingGear, LandingScene, build_landing_scene
-from armland.plant.magnet import Magnet, device, energise
+from armland.plant.magnet import Magnet, device
 from armland.plant.noise import BLOCK, WhiteNoise, stream
 from armland.plant.scene import ROTORS, UAV
 from armland.rotations import Array, from_rotation_vector, matrix, multiply
-
-MARKER_DOWN = np.array([0.0, 1.0, 0.0, 0.0])
-"""body<-marker: the printed face looks down."""
 
 PROCEDURES = {"air": tuple(p.name for p in LANDING), "cradle": tuple(p.name for p in TAKEOFF)}
 """Phases of the mission that begins there."""
@@ -93,12 +91,13 @@ class LandingPlant:
         exact = {} if scenario.landing.imperfections.camera else {"delay_ms": (0.0, 0.0), "honesty": 0.01, "lose": 0.0}
         camera = Camera(rate_hz=eye.rate_hz, marker_size_m=eye.marker_size_m, **exact)  # type: ignore[arg-type]
         self._camera_p = camera_parameters(camera, scenario.demonstrator.run.rate_hz)
-        self._eye = np.array(eye.camera_m), np.array(eye.marker_m)
+        self._eye = np.array([eye.camera_m, eye.marker_m])
         self._addresses = np.zeros(1, ADDRESSES)
         first = self.scene.model.joint(int(self.scene.model.dof_jntid[self.scene.joint_dof[0]])).name
         for name in SENSORS:
             self._addresses[name] = self.scene.sensor[f"{name}_{first}" if name in ("q", "qd", "tau") else name]
-        self._applied = self.data.xfrc_applied[self.scene.uav_body]
+        d = self.data
+        self._physics = d.ctrl, self.scene.uav_body, d.geom_xpos, d.geom_xmat, d.xipos
         limits = self.scene.model.jnt_actfrcrange[self.scene.model.dof_jntid[self.scene.joint_dof]]
         self._tau_max = np.abs(limits).min(axis=1)
         self._friction = self.scene.model.dof_frictionloss[self.scene.joint_dof].copy()
@@ -128,7 +127,7 @@ class LandingPlant:
             d.qvel[s.uav_dof[:3]] = drawn.velocity
             thrust = s.uav_mass * 9.81 / drawn.thrust_factor
             self._state["rotor"] = self._state["rotor_asked"] = thrust / ROTORS * drawn.thrust_factor
-            self._applied[:] = [0.0, 0.0, s.uav_mass * 9.81, 0.0, 0.0, 0.0]
+            d.xfrc_applied[s.uav_body] = [0.0, 0.0, s.uav_mass * 9.81, 0.0, 0.0, 0.0]
         self._state["arrived"][0, 5] = UavMode.AUTONOMOUS if flying else UavMode.OFF
         self._state["arrived"][0, 0] = 1.0
         mujoco.mj_forward(s.model, d)
@@ -143,41 +142,21 @@ class LandingPlant:
         """Fill measurement and truth of `tick`."""
         if self._tick % BLOCK == 0:
             self._noise.draw()
-        row, d = self._noise.rows[self._tick % BLOCK], self.data
-        m, t = tick.measurement, tick.truth
-        sense(self._tick, d.sensordata, self._addresses, self._parameters, self._state, row, m, t)
-        self._look(row[-NOISE_WIDTH:], m, t)
-        m["magnet_force"] = self._magnet_s["report"]
-        m["magnet_fault"] = self._magnet_s["fault"]
-        t["touching"] = self._magnet_s["touching"]
-
-    def _look(self, noise: Array, m: np.ndarray, t: np.ndarray) -> None:
-        sample, (camera, marker), truth = self._sample, self._eye, t[0]
-        due = (self._tick * self.scenario.landing.eye.rate_hz) % self.scenario.demonstrator.run.rate_hz
-        s = self._camera_s[0]
-        if due >= self.scenario.landing.eye.rate_hz and not (s["first"] < s["end"]):
-            m["camera_fresh"] = 0
-            return
-        eye = truth["ee"] + matrix(truth["ee_quat"]) @ camera
-        mark = truth["r_cm"] + matrix(truth["quat"]) @ marker
-        seen = multiply(truth["quat"], MARKER_DOWN)
-        observe(
+        sample(
             self._tick,
-            eye,
-            truth["ee_quat"],
-            mark,
-            seen,
-            noise,
-            self.faults.camera_frozen,
+            self.data.sensordata,
+            self._addresses,
+            self._parameters,
+            self._state,
+            self._noise.rows[self._tick % BLOCK],
+            self._eye,
             self._camera_p,
             self._camera_s,
-            sample,
+            self._sample,
+            self._magnet_s,
+            tick.measurement,
+            tick.truth,
         )
-        fresh = int(sample["fresh"][0]) and not self.faults.camera_lost
-        m["camera_fresh"] = fresh
-        if fresh:
-            m["camera_capture"], m["camera_position"] = sample["capture"], sample["position"]
-            m["camera_quat"], m["camera_sigma"] = sample["quat"], sample["sigma"]
 
     def command(self, tick: LandingTick) -> None:
         """Apply the command of `tick` and step the physics once.
@@ -187,26 +166,26 @@ class LandingPlant:
         """
         if self.faults:
             self.faults.apply(self._tick, int(tick.mission["phase"][0]), self._state, self._magnet_p, self._rated)
-        d, row = self.data, self._noise.rows[self._tick % BLOCK]
-        braked = int(tick.command["brake"][0])
-        if braked != self._braked:
-            self._braked = braked
-            self._brake(bool(braked))
-        finite = actuate(
+        d = self.data
+        what = act(
             self._tick,
             tick.command,
             tick.truth,
+            self._braked,
             self._tau_max,
             self._parameters,
             self._state,
-            row[2 * self.scene.joints + 12 :],
-            d.ctrl,
-            self._applied,
+            self._noise.rows[self._tick % BLOCK],
+            *self._physics,
+            self._magnet_p,
+            self._magnet_s,
+            d.xfrc_applied,
         )
-        if not finite:
+        if what == NOT_FINITE:
             raise PlantError(f"command or state of tick {self._tick} are not finite numbers")
-        magnet = int(tick.command["magnet"][0])
-        energise(magnet, d.geom_xpos, d.geom_xmat, d.xipos, self._magnet_p, self._magnet_s, d.xfrc_applied)
+        if what == BRAKE:
+            self._braked = int(tick.command["brake"][0])
+            self._brake(self._braked == 1)
         mujoco.mj_step(self.scene.model, d)
         self._tick += 1
 

@@ -75,6 +75,8 @@ STATE = np.dtype(
         ("force", "f8", (3,)),  # N, world, on the UAV
         ("away", "f8", (3,)),  # m, by which a UAV that does not obey hovers elsewhere
         ("deaf", "i8"),
+        ("camera_frozen", "i8"),
+        ("camera_lost", "i8"),
     ]
 )
 

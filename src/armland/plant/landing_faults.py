@@ -5,6 +5,20 @@ import numpy as np
 from armland.errors import ConfigurationError
 from armland.mission.landing_scenario import Fault
 
+WRITTEN = (
+    "uplink_lost",
+    "downlink_lost",
+    "wrench_frozen",
+    "arm_stale",
+    "deaf",
+    "drift",
+    "force",
+    "away",
+    "camera_frozen",
+    "camera_lost",
+)
+"""What of the devices' state belongs to the faults, besides the rotors' health."""
+
 
 class FaultSchedule:
     """The faults of a scenario; false where there are none.
@@ -30,17 +44,15 @@ class FaultSchedule:
     def reset(self) -> None:
         """Back to the run's begin."""
         self._armed: list[int | None] = [0 if f.phase is None else None for f in self._faults]
-        self.camera_frozen = self.camera_lost = False
 
     def __bool__(self) -> bool:
         return bool(self._faults)
 
     def apply(self, tick: int, phase: int, state: np.ndarray, magnet: np.ndarray, rated: float) -> None:
         """Write what fails at this tick into the devices' `state` and the `magnet`'s parameters, both (1,)."""
-        for name in ("uplink_lost", "downlink_lost", "wrench_frozen", "arm_stale", "deaf", "drift", "force", "away"):
+        for name in WRITTEN:
             state[name] = 0
         state["health"], magnet["health"], magnet["rated"] = 1.0, 1.0, rated
-        self.camera_frozen = self.camera_lost = False
         for i, fault in enumerate(self._faults):
             if self._armed[i] is None and fault.phase is not None and self._phases[phase] == fault.phase:
                 self._armed[i] = tick
@@ -60,9 +72,9 @@ class FaultSchedule:
             case "downlink_loss":
                 state["downlink_lost"] = 1
             case "camera_frozen":
-                self.camera_frozen = True
+                state["camera_frozen"] = 1
             case "camera_lost":
-                self.camera_lost = True
+                state["camera_lost"] = 1
             case "wrench_frozen":
                 state["wrench_frozen"] = 1
             case "wrench_drift":
