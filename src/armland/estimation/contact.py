@@ -22,7 +22,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.stats import chi
 
 from armland.records import Record
 from armland.rotations import Array
@@ -117,12 +116,17 @@ def contact_parameters(settings: Contact, tick_s: float) -> NDArray[np.void]:
 
 def false_alarm_bound(threshold: float, sigma: float, rate_hz: float) -> float:
     """Most false contacts per second that noise of `sigma` N per component makes at `threshold` N. Source: (C.1)."""
-    return float(rate_hz * chi(3).sf(threshold / sigma))
+    from scipy.special import gammaincc
+
+    # The noise's length has a chi distribution of three degrees of freedom.
+    return float(rate_hz * gammaincc(1.5, 0.5 * (threshold / sigma) ** 2))
 
 
 def contact_threshold(sigma: float, rate_hz: float, alarms_per_s: float) -> float:
     """Lowest threshold, N, with at most `alarms_per_s` false contacts for noise of `sigma` N per component. Source: (C.1)."""
-    return float(sigma * chi(3).isf(alarms_per_s / rate_hz))
+    from scipy.special import gammainccinv
+
+    return float(sigma * np.sqrt(2.0 * gammainccinv(1.5, alarms_per_s / rate_hz)))
 
 
 @njit(cache=True)
