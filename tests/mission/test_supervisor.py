@@ -42,10 +42,20 @@ class Bench:
         self.e["quat"][0, 0], self.e["plate_valid"], self.h["joint_margin"] = 1.0, 1, 1.0
         self.s["sigma"], self.s["seen"], self.s["started"] = 0.2, 1, 1
 
-    def find(self, ticks=1, matters=ALL, bad=0, expected=np.nan, magnet_on=False):
+    def find(self, ticks=1, matters=ALL, bad=0, expected=np.nan, magnet_on=False, force_max=1e9):
         for _ in range(ticks):
             fault = find_fault(
-                bad, magnet_on, expected, self.m[0], self.e[0], self.h[0], self.p[0], self.s[0], DEBOUNCE, matters
+                bad,
+                magnet_on,
+                expected,
+                force_max,
+                self.m[0],
+                self.e[0],
+                self.h[0],
+                self.p[0],
+                self.s[0],
+                DEBOUNCE,
+                matters,
             )
         return FAULTS[fault]
 
@@ -191,3 +201,16 @@ def test_joint_at_its_end_is_driven_back_only(bench, q, tau, allowed):
     given, flags = bench.limited(np.full(JOINTS, tau))
     assert bool(flags & Limit.JOINT_POSITION) == (abs(q) > 1.98)
     assert (given[3] == tau) == allowed
+
+
+def test_largest_force_follows_the_phase(bench):
+    bench.e["hinge_force"][0, 2] = 12.0
+    assert bench.find(10, force_max=20.0) == "none"
+    assert bench.find(10, force_max=5.0) == "overload"
+
+
+def test_no_phase_allows_more_force_where_nothing_may_touch():
+    for phases in (LANDING, TAKEOFF):
+        for p in phases:
+            if p.kind in ("flight", "ground") and not p.final:
+                assert p.force_n <= 5.0, p.name

@@ -202,7 +202,8 @@ def landing_tick(
     expected = load_expected(row, elapsed, e, p, s)
     fault = 0
     if not row.final:
-        fault = find_fault(bad, magnet_on, expected, m, e, t.health, p, s, debounce, rows[:, s.phase].copy())
+        matters = rows[:, s.phase].copy()
+        fault = find_fault(bad, magnet_on, expected, row.force, m, e, t.health, p, s, debounce, matters)
     new = rows[fault, s.phase] if fault else next_phase(s.phase, elapsed, signals, phases, guards, conditions, counts)
     if fault:
         s.fault = fault

@@ -1,7 +1,7 @@
 """The landing as a table of phases; the names of thresholds are those of `bounds.thresholds`."""
 
 from armland.mission.finals import FINALS
-from armland.mission.phases import Condition, Guard, Phase
+from armland.mission.phases import CARRIED_N, IMPACT_N, Condition, Guard, Phase
 
 C, G = Condition, Guard
 
@@ -58,6 +58,7 @@ LANDING = (
     ),
     Phase(
         "close",
+        force_n=IMPACT_N,
         kind="touch",
         arm="close",
         uav="station",
@@ -73,6 +74,7 @@ LANDING = (
     ),
     Phase(
         "capture",
+        force_n=IMPACT_N,
         kind="touch",
         arm="hold",
         uav="ramp",
@@ -89,6 +91,7 @@ LANDING = (
     ),
     Phase(
         "hand_over",
+        force_n=CARRIED_N,
         kind="held",
         arm="hold",
         uav="ramp",
@@ -103,6 +106,7 @@ LANDING = (
     ),
     Phase(
         "carry",
+        force_n=CARRIED_N,
         kind="held",
         arm="move",
         uav="ramp",
@@ -118,6 +122,7 @@ LANDING = (
     ),
     Phase(
         "set_down",
+        force_n=IMPACT_N,
         kind="held",
         arm="move",
         uav="ramp",
@@ -132,6 +137,7 @@ LANDING = (
     ),
     Phase(
         "unload",
+        force_n=IMPACT_N,
         kind="cradle",
         link="landed",
         arm="yield",
@@ -154,6 +160,7 @@ LANDING = (
     ),
     Phase(
         "release",
+        force_n=CARRIED_N,
         kind="cradle",
         arm="yield",
         uav="off",

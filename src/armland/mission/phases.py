@@ -44,6 +44,10 @@ SIGNALS = {
 SIGNAL = {name: i for i, name in enumerate(SIGNALS)}
 
 
+CARRIED_N, IMPACT_N = 20.0, 60.0
+"""Hinge forces, N, of phases that carry and of phases in which faces meet: the demonstrator's makes 3 N and 30 N (estimates)."""
+
+
 class Condition(NamedTuple):
     """`signal` below (`<`) or above (`>`) the threshold of that name, in the signal's unit."""
 
@@ -83,8 +87,8 @@ class Phase(NamedTuple):
     """Whether the end effector is known to touch nothing: the force-torque sensor's bias is learnt."""
     observe: bool = False
     """Whether the disturbance observer learns."""
-    force_n: float = 60.0
-    """Largest hinge force of the phase, N."""
+    force_n: float = 5.0
+    """Hinge force, N, that no healthy flight of the phase makes; by default of one in which nothing touches."""
     share: float = 1.0
     """Share of the weight that the rotors carry at the end of the phase, where the UAV ramps its thrust."""
     duration_s: float = 0.0

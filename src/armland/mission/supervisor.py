@@ -112,6 +112,7 @@ def find_fault(
     bad: int,
     magnet_on: bool,
     expected: float,
+    force_max: float,
     m: Record,
     e: Record,
     h: Record,
@@ -126,6 +127,7 @@ def find_fault(
         bad: numbers in the measurement that were not finite.
         magnet_on: whether the magnet has been on for longer than its current takes to rise.
         expected: vertical hinge force that load and thrust explain, N; NaN where nothing is known.
+        force_max: largest hinge force of the phase, N; the magnet's share counts where that is less.
         m: measurement.
         e: estimate.
         h: health.
@@ -148,7 +150,7 @@ def find_fault(
     signs[WRENCH_DRIFT] = abs(e.hinge_force[2] - expected) > p.free_tolerance
     signs[MAGNET_COIL] = magnet_on and m.magnet_fault == 1
     signs[SLIP] = e.plate_valid == 1 and apart > p.slip**2
-    signs[OVERLOAD] = force > p.hinge_max
+    signs[OVERLOAD] = force > min(force_max, p.hinge_max)
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
     signs[NEAR_LIMIT] = h.joint_margin < p.joint_margin or s.sigma < p.sigma_min
     for f in range(1, len(FAULTS)):

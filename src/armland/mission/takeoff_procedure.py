@@ -1,7 +1,7 @@
 """The take-off as a table of phases: the landing backwards; the names of thresholds are those of `bounds.thresholds`."""
 
 from armland.mission.finals import FINALS
-from armland.mission.phases import Condition, Guard, Phase
+from armland.mission.phases import CARRIED_N, IMPACT_N, Condition, Guard, Phase
 
 C, G = Condition, Guard
 
@@ -32,6 +32,7 @@ TAKEOFF = (
     ),
     Phase(
         "touch",
+        force_n=IMPACT_N,
         kind="cradle",
         arm="move",
         uav="off",
@@ -43,6 +44,7 @@ TAKEOFF = (
     ),
     Phase(
         "grip",
+        force_n=IMPACT_N,
         kind="cradle",
         arm="yield",
         uav="off",
@@ -53,6 +55,7 @@ TAKEOFF = (
     ),
     Phase(
         "spin_up",
+        force_n=CARRIED_N,
         kind="cradle",
         link="landed",
         arm="yield",
@@ -65,6 +68,7 @@ TAKEOFF = (
     ),
     Phase(
         "lift",
+        force_n=CARRIED_N,
         kind="held",
         arm="move",
         uav="ramp",
@@ -79,6 +83,7 @@ TAKEOFF = (
     ),
     Phase(
         "carry_up",
+        force_n=CARRIED_N,
         kind="held",
         arm="move",
         uav="ramp",
@@ -94,6 +99,7 @@ TAKEOFF = (
     ),
     Phase(
         "hand_back",
+        force_n=CARRIED_N,
         kind="held",
         arm="hold",
         uav="balance",
@@ -117,6 +123,7 @@ TAKEOFF = (
     ),
     Phase(
         "release",
+        force_n=CARRIED_N,
         kind="touch",
         arm="hold",
         uav="level",
