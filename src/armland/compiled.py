@@ -1,8 +1,12 @@
-"""Keeps Numba's cache honest: compiled code goes when anything that it was compiled from has changed.
+"""Keeps Numba's cache honest: compiled code goes when anything that it was compiled from has changed, and is not mixed up.
 
 Numba looks at the one file in which a compiled function stands. What that function calls in other files, and the constants
 that it takes from them, are compiled into it all the same. So each module is stamped here with the contents of all modules
 of the package that it imports, directly or not, and where a stamp no longer fits, the module's compiled functions are deleted.
+
+Numba names a compiled function after its arguments' types, and a record's type after the number that it has in the process:
+code that two processes compiled for different records can bear the same name in the cache, and a third process that loads both
+calls one of them for the other, which reads the wrong bytes. Here a record's type is named after its layout.
 """
 
 import contextlib
@@ -10,9 +14,20 @@ import hashlib
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 PACKAGE = Path(__file__).parent
 STAMPS = Path("__pycache__") / "compiled.json"
+
+
+def name_records_by_layout() -> None:
+    """Make Numba name a record's type after its fields, offsets and size; to be called before anything is compiled."""
+    from numba.core import types
+
+    def mangling_args(self: Any) -> tuple[str, tuple[str]]:
+        return type(self).__name__, (hashlib.sha256(str(self.name).encode()).hexdigest(),)
+
+    types.Record.mangling_args = property(mangling_args)  # type: ignore[assignment, method-assign]
 
 
 def drop_stale(package: Path = PACKAGE) -> list[Path]:
@@ -44,6 +59,8 @@ def _read(path: Path) -> dict[str, str]:
 
 def _stamps(package: Path) -> dict[str, str]:
     sources = {p.relative_to(package).as_posix(): p.read_bytes() for p in sorted(package.rglob("*.py"))}
+    # How names are made is part of what is compiled.
+    own = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
     imports = {name: _imported(text.decode(), package.name, sources) for name, text in sources.items()}
     digests = {name: hashlib.sha256(text).hexdigest() for name, text in sources.items()}
     stamps = {}
@@ -53,7 +70,7 @@ def _stamps(package: Path) -> dict[str, str]:
             new = imports[ahead.pop()] - reached
             reached |= new
             ahead += new
-        stamps[name] = hashlib.sha256("".join(digests[r] for r in sorted(reached)).encode()).hexdigest()
+        stamps[name] = hashlib.sha256("".join([own, *(digests[r] for r in sorted(reached))]).encode()).hexdigest()
     return stamps
 
 

@@ -11,6 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from armland.compiled import name_records_by_layout
+
+name_records_by_layout()
+
 Record = Any
 """A structured record inside compiled code, its fields read and written as attributes."""
 

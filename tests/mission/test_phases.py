@@ -7,7 +7,8 @@ from armland.errors import ConfigurationError
 from armland.mission.bounds import thresholds, tuned
 from armland.mission.landing_procedure import LANDING
 from armland.mission.landing_scenario import Landing
-from armland.mission.phases import SIGNAL, SIGNALS, Condition, Guard, Phase, check, compile_table, next_phase
+from armland.mission.phase_table import compile_table, next_phase
+from armland.mission.phases import SIGNAL, SIGNALS, Condition, Guard, Phase, check
 from armland.mission.takeoff_procedure import TAKEOFF
 
 TICK_S = 1e-3

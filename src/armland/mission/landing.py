@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 from armland.mission.landing_arm import BRAKE, JOIN, arm_torque, begin_reference, held_force, refer, track
 from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, tilt_of
 from armland.mission.landing_uav import AUTONOMOUS, LEVEL, STATION, command_uav, thrust_in_force
-from armland.mission.phases import MAGNET, SIGNAL, SIGNALS, next_phase
+from armland.mission.phase_table import next_phase
+from armland.mission.phases import MAGNET, SIGNAL, SIGNALS
 from armland.mission.supervisor import find_fault, limit
 from armland.records import Record
 from armland.rotations import Array

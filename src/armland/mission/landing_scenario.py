@@ -61,8 +61,8 @@ class Place(Section):
 
     catch_m: Vector3 = Field((0.62, 0.0, 0.86), description="where the UAV keeps its station and is caught")
     put_down_m: Vector3 = Field((0.68, 0.0, 0.701), description="where the pivot is when the UAV stands on the cradle")
-    home_deg: tuple[Finite, ...] = Field(
-        (-3.0, -83.0, -6.0, -49.0, 11.0, 35.0, -11.0), description="joint positions near the catch"
+    home_deg: tuple[Finite, ...] | None = Field(
+        None, description="joint positions near the catch; searched for if absent"
     )
     wait_below_m: Positive = Field(0.20, description="how far below the catch the arm waits")
     standoff_m: Positive = Field(0.03, description="gap from which the arm closes")

@@ -16,11 +16,12 @@ from armland.mission.bounds import thresholds, tuned
 from armland.mission.landing_procedure import LANDING
 from armland.mission.landing_scenario import Landing, LandingScenario
 from armland.mission.landing_state import parameters_layout
-from armland.mission.phases import Phase, Table, compile_table
+from armland.mission.phase_table import Table, compile_table
+from armland.mission.phases import Phase
 from armland.mission.takeoff_procedure import TAKEOFF
 from armland.models.arm import ArmModel
 from armland.models.parameters import arm_model
-from armland.models.workspace import check_path
+from armland.models.workspace import check_path, home_poses
 from armland.rotations import Array, rotation_error
 
 GRAVITY = 9.81
@@ -30,6 +31,9 @@ UPRIGHT = np.eye(3)
 
 POSITION = Wanted(30.0, 1.0)
 """Poles of the held UAV's position."""
+
+BRANCHES, MARGIN_RAD = 16, 0.2
+"""Where no home is given: poses that are tried at most, and the distance to all joints' ends that is good enough."""
 
 
 class Setup(NamedTuple):
@@ -56,7 +60,7 @@ def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "
     """
     landing, demonstrator = scenario.landing, scenario.demonstrator
     arm = arm_model(demonstrator)
-    if len(landing.place.home_deg) != arm.joints:
+    if landing.place.home_deg is not None and len(landing.place.home_deg) != arm.joints:
         raise ConfigurationError(
             f"place.home_deg has {len(landing.place.home_deg)} values; the arm has {arm.joints} joints"
         )
@@ -130,25 +134,35 @@ def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: floa
     """
     landing = scenario.landing
     points = way_points(landing, mission)
-    near = np.deg2rad(landing.place.home_deg)
-    # From the pose that is known the arm is led to the first way point: no other branch of the kinematics comes in.
-    arm.update(near, np.zeros(arm.joints))
-    lead = np.linspace(arm.position.copy(), points[0], 25)
-    q = near
-    for point in lead:
-        q = _solve(arm, q, point)
     fine = np.concatenate([np.linspace(a, b, 20) for a, b in pairwise(points)])
-    try:
-        check_path(arm, q, UPRIGHT, fine, np.arange(len(fine), dtype=float))
-    except WorkspaceError as refusal:
-        text = str(refusal).replace(
-            "the trajectory leaves the workspace at t =", "the way of the landing leaves it at point"
-        )
+    if landing.place.home_deg is not None:
+        near = [np.deg2rad(landing.place.home_deg)]
+    else:
+        near = [p.q for p in home_poses(arm, np.array(landing.place.catch_m), None, arm.joints // 2)[:BRANCHES]]
+    best, widest, refusal = near[0], -np.inf, WorkspaceError("")
+    for start in near:
+        # From the pose that is known the arm is led to the first way point: no other branch of the kinematics comes in.
+        arm.update(start, np.zeros(arm.joints))
+        q = start
+        for point in np.linspace(arm.position.copy(), points[0], 25):
+            q = _solve(arm, q, point)
+        try:
+            margin = check_path(arm, q, UPRIGHT, fine, np.arange(len(fine), dtype=float))
+        except WorkspaceError as e:
+            refusal = e
+            continue
+        if margin > widest:
+            best, widest = q, margin
+        if margin > MARGIN_RAD:
+            break
+    if widest < 0.0:
+        what = str(refusal).partition(" s: ")[2].partition("; shorten")[0]
         raise WorkspaceError(
-            f"{text} (place.catch_m = {landing.place.catch_m}, put_down_m = {landing.place.put_down_m})"
+            f"the arm's way leaves its workspace: {what}; it leads from below place.catch_m = {landing.place.catch_m} to "
+            f"place.put_down_m = {landing.place.put_down_m} and {landing.place.above_m:g} m above it: bring them nearer to the base"
         ) from refusal
-    _check_torque(arm, q, fine, weight)
-    return q
+    _check_torque(arm, best, fine, weight)
+    return best
 
 
 def _check_torque(arm: ArmModel, q: Array, points: Array, weight: float) -> None:

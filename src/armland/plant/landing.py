@@ -17,7 +17,7 @@ from armland.plant.landing_cycle import BRAKE, NOT_FINITE, act, sample
 from armland.plant.landing_devices import ADDRESSES, PARAMETERS, SENSORS, STATE
 from armland.plant.landing_faults import FaultSchedule
 from armland.plant.landing_onboard import RING
-from armland.plant.landing_scene import PLATE, LandingGear, LandingScene, build_landing_scene
+from armland.plant.landing_scene import PLATE, Cradle, LandingGear, LandingScene, build_landing_scene
 from armland.plant.magnet import Magnet, device
 from armland.plant.noise import BLOCK, WhiteNoise, stream
 from armland.plant.scene import ROTORS, UAV
@@ -75,7 +75,7 @@ class LandingPlant:
 
     def __init__(self, scenario: LandingScenario, home: Array, start: Literal["air", "cradle"] = "air") -> None:
         self.scenario = scenario
-        gear = LandingGear(magnet=Magnet(rated_force=scenario.landing.magnet_rating_n))
+        gear = landing_gear(scenario)
         self.scene: LandingScene = build_landing_scene(scenario.demonstrator, gear)
         _load(self.scene, scenario.landing.extra_mass_kg)
         self.data = mujoco.MjData(self.scene.model)
@@ -197,6 +197,16 @@ class LandingPlant:
 
     def stop(self) -> None:
         """Nothing to let go of in a simulation. Never raises."""
+
+
+def landing_gear(scenario: LandingScenario) -> LandingGear:
+    """Gear of a scenario: its magnet, and the cradle where the UAV shall be put down."""
+    gear, down = LandingGear(), np.array(scenario.landing.place.put_down_m)
+    # The skids' lower edge lies on the rails.
+    down[2] += gear.skids.z - gear.skids.radius - scenario.demonstrator.uav.lever_m[2]
+    x, y, z = (round(float(c), 9) for c in down)
+    magnet = Magnet(rated_force=scenario.landing.magnet_rating_n)
+    return gear._replace(magnet=magnet, cradle=Cradle(position=(x, y, z)))
 
 
 def _load(scene: LandingScene, mass: float) -> None:
