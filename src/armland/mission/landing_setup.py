@@ -18,6 +18,7 @@ from armland.mission.landing_scenario import Landing, LandingScenario
 from armland.mission.landing_state import parameters_layout
 from armland.mission.phases import Phase, Table, compile_table
 from armland.mission.takeoff_procedure import TAKEOFF
+from armland.mission.tracking_reach import check_tracking
 from armland.models.arm import ArmModel
 from armland.models.parameters import arm_model
 from armland.models.workspace import check_path
@@ -96,18 +97,21 @@ def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "
 def _check_weight(scenario: LandingScenario, weight: float) -> None:
     landing, rotors = scenario.landing, scenario.demonstrator.rotors
     held = landing.envelope.hinge_force_share * landing.magnet_rating_n
+    problems = []
     if weight > held:
-        raise ConfigurationError(
+        problems.append(
             f"the UAV weighs {weight:.1f} N; the magnet may be loaded with {held:.1f} N, "
             f"{landing.envelope.hinge_force_share:g} of its rating of {landing.magnet_rating_n:g} N: "
             f"at most {held / GRAVITY:.2f} kg can be held"
         )
     lift = 0.9 * 4.0 * rotors.max_thrust_n
     if weight > lift:
-        raise ConfigurationError(
+        problems.append(
             f"the UAV weighs {weight:.2f} N; its rotors give {4.0 * rotors.max_thrust_n:.2f} N, of which {lift:.2f} N may go "
             f"into hovering: at most {lift / GRAVITY:.3f} kg can fly"
         )
+    if problems:
+        raise ConfigurationError("\n  ".join(problems))
 
 
 def way_points(landing: Landing, mission: str) -> list[Array]:
@@ -125,7 +129,7 @@ def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: floa
     """Joint positions (n,) at the mission's first way point.
 
     Raises:
-        WorkspaceError: a way point out of reach.
+        WorkspaceError: a way point, or where the arm follows the UAV, out of reach.
         ConfigurationError: joint torques beyond their limits.
     """
     landing = scenario.landing
@@ -148,6 +152,8 @@ def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: floa
             f"{text} (place.catch_m = {landing.place.catch_m}, put_down_m = {landing.place.put_down_m})"
         ) from refusal
     _check_torque(arm, q, fine, weight)
+    if mission == "landing":
+        check_tracking(arm, q, landing)
     return q
 
 
