@@ -20,6 +20,10 @@ app = typer.Typer(
 )
 
 
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells have it."""
+
+
 def _version(show: bool) -> None:
     if show:
         print(f"armland {__version__}")
@@ -65,6 +69,8 @@ def main() -> None:
     except ArmlandError as e:
         print(f"armland: {e}", file=sys.stderr)
         sys.exit(2)
-    except KeyboardInterrupt:
-        print("armland: interrupted; a run log that was begun holds what was recorded so far", file=sys.stderr)
-        sys.exit(130)
+    except SystemExit as end:
+        # That is what typer has made of Ctrl-C.
+        if end.code == INTERRUPTED:
+            print("armland: interrupted; a run log that was begun holds what was recorded so far", file=sys.stderr)
+        raise

@@ -126,7 +126,7 @@ class Envelope(Section):
 
     hinge_force_share: Positive = Field(0.6, description="largest hinge force over the magnet's rating")
     joint_speed_share: Positive = Field(0.9, description="of the joints' rated speed at which the arm is stopped")
-    joint_speed_rad_s: tuple[Positive, ...] = (1.92, 1.92, 2.23, 2.23, 2.27, 3.14, 3.14)
+    joint_speed_rad_s: tuple[Positive, ...] = Field((1.92, 1.92, 2.23, 2.23, 2.27, 3.14, 3.14), min_length=1)
     torque_rate_nm_s: Positive = Field(1500.0, description="largest rate of a joint torque")
     joint_margin_rad: NonNegative = Field(
         0.02, description="distance to a joint's end at which only motion away is left"
@@ -145,7 +145,9 @@ class Landing(Section):
     title: str = "landing"
     base: str = Field("paper", description="scenario of arm, tool, UAV and link")
     seed: int = Field(1, ge=0)
-    duration_s: Positive = Field(45.0, description="after which a mission that has not ended counts as not landed")
+    duration_s: Finite = Field(
+        45.0, ge=1.0, description="after which a mission that has not ended counts as not landed"
+    )
     place: Place = Place()
     eye: Eye = Eye()
     imperfections: Imperfections = Imperfections()

@@ -18,7 +18,7 @@ from armland.mission.landing_scenario import Landing, LandingScenario
 from armland.mission.landing_state import parameters_layout
 from armland.mission.phases import Phase, Table, compile_table
 from armland.mission.takeoff_procedure import TAKEOFF
-from armland.mission.tracking_reach import check_tracking
+from armland.mission.tracking_reach import check_tracking, out_of_reach
 from armland.models.arm import ArmModel
 from armland.models.parameters import arm_model
 from armland.models.workspace import check_path
@@ -145,11 +145,9 @@ def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: floa
     try:
         check_path(arm, q, UPRIGHT, fine, np.arange(len(fine), dtype=float))
     except WorkspaceError as refusal:
-        text = str(refusal).replace(
-            "the trajectory leaves the workspace at t =", "the way of the landing leaves it at point"
-        )
         raise WorkspaceError(
-            f"{text} (place.catch_m = {landing.place.catch_m}, put_down_m = {landing.place.put_down_m})"
+            f"the arm cannot follow the {mission}'s way: {out_of_reach(refusal)}; the way is given by place.catch_m = "
+            f"{landing.place.catch_m}, put_down_m = {landing.place.put_down_m}, wait_below_m, above_m and withdraw_m"
         ) from refusal
     _check_torque(arm, q, fine, weight)
     if mission == "landing":

@@ -30,6 +30,11 @@ def tracked_points(landing: Landing) -> Array:
     return np.concatenate(ways)
 
 
+def out_of_reach(refusal: WorkspaceError) -> str:
+    """What `check_path` says of the point, without time and advice, which are a trajectory's."""
+    return str(refusal).partition(" s: ")[2].partition("; shorten")[0]
+
+
 def check_tracking(arm: ArmModel, q: Array, landing: Landing) -> None:
     """Refuse a catch about which the arm could not follow the UAV.
 
@@ -48,8 +53,7 @@ def check_tracking(arm: ArmModel, q: Array, landing: Landing) -> None:
     try:
         check_path(arm, q, np.eye(3), points, np.arange(len(points), dtype=float))
     except WorkspaceError as refusal:
-        where = str(refusal).partition(" s: ")[2].partition("; shorten")[0]
         raise WorkspaceError(
             f"the arm must follow the UAV within bounds.uav_error_m = {landing.bounds.uav_error_m:g} m about "
-            f"place.catch_m = {place.catch_m}: {where}; move the catch or lower the bound"
+            f"place.catch_m = {place.catch_m}: {out_of_reach(refusal)}; move the catch or lower the bound"
         ) from refusal
