@@ -5,7 +5,7 @@ import pytest
 
 from armland.errors import WorkspaceError
 from armland.mission.landing_scenario import landing_scenario
-from armland.mission.landing_setup import set_up
+from armland.mission.landing_setup import UPRIGHT, set_up
 from armland.mission.tracking_reach import check_tracking, tracked_points
 
 
@@ -48,8 +48,8 @@ def test_arm_reaches_as_far_as_its_two_long_links(axis):
         reachable = bool(np.linalg.norm(wrist, axis=1).max() < UPPER_ARM_M + FOREARM_M)
         seen.add(reachable)
         if reachable:
-            check_tracking(setup.arm, setup.home, landing)
+            check_tracking(setup.arm, setup.home, UPRIGHT, landing)
         else:
             with pytest.raises(WorkspaceError, match="out of reach by"):
-                check_tracking(setup.arm, setup.home, landing)
+                check_tracking(setup.arm, setup.home, UPRIGHT, landing)
     assert seen == {True, False}

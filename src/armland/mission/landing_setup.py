@@ -151,7 +151,7 @@ def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: floa
         ) from refusal
     _check_torque(arm, q, fine, weight)
     if mission == "landing":
-        check_tracking(arm, q, landing)
+        check_tracking(arm, q, UPRIGHT, landing)
     return q
 
 

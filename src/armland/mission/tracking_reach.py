@@ -35,12 +35,13 @@ def out_of_reach(refusal: WorkspaceError) -> str:
     return str(refusal).partition(" s: ")[2].partition("; shorten")[0]
 
 
-def check_tracking(arm: ArmModel, q: Array, landing: Landing) -> None:
+def check_tracking(arm: ArmModel, q: Array, R_d: Array, landing: Landing) -> None:
     """Refuse a catch about which the arm could not follow the UAV.
 
     Args:
         arm: the arm model (its state is overwritten).
-        q: joint positions (n,) rad with the end effector near the catch, upright.
+        q: joint positions (n,) rad with the end effector below the catch, where the arm waits.
+        R_d: orientation (3, 3) that it keeps.
         landing: what is wanted.
 
     Raises:
@@ -51,7 +52,7 @@ def check_tracking(arm: ArmModel, q: Array, landing: Landing) -> None:
     lead = np.linspace(np.array(place.catch_m) - [0.0, 0.0, place.wait_below_m], points[0], 8)
     points = np.concatenate([lead, points])
     try:
-        check_path(arm, q, np.eye(3), points, np.arange(len(points), dtype=float))
+        check_path(arm, q, R_d, points, np.arange(len(points), dtype=float))
     except WorkspaceError as refusal:
         raise WorkspaceError(
             f"the arm must follow the UAV within bounds.uav_error_m = {landing.bounds.uav_error_m:g} m about "
