@@ -32,7 +32,7 @@ def bare(assembly: Assembly) -> float:
 def closed(assembly: Assembly, folder: Path) -> float:
     begin = time.perf_counter()
     with Recorder(folder / "loop.mcap", assembly.tick, 1_000_000) as recorder:
-        run_loop(assembly.plant, assembly.controller, recorder, assembly.tick, STEPS)
+        run_loop(assembly.plant, assembly.controller, recorder, assembly.tick, range(STEPS))
     return (time.perf_counter() - begin) / STEPS
 
 

@@ -45,16 +45,16 @@ def load_scenario(path: str | Path, overrides: dict[str, Any] | None = None) -> 
         ConfigurationError: one message that lists every error with its path.
     """
     path = find(path)
-    data = _read(path)
+    data = read_toml(path)
     problems: list[str] = []
     calibration = data.get("calibration")
     if isinstance(calibration, str):
-        problems += _merge_calibration(data, _read(_find_calibration(calibration, path.parent)), calibration)
-    _update(data, overrides or {})
+        problems += _merge_calibration(data, read_toml(_find_calibration(calibration, path.parent)), calibration)
+    update(data, overrides or {})
     try:
         scenario = Scenario.model_validate_json(json.dumps(data, default=str))
     except ValidationError as e:
-        problems += [line for x in e.errors() for line in _problem(x).split("\n")]
+        problems += [line for x in e.errors() for line in problem(x).split("\n")]
     if problems:
         head = f"{path.name}: {len(problems)} problem{'s' if len(problems) > 1 else ''}"
         raise ConfigurationError("\n  ".join([head, *problems]))
@@ -70,7 +70,7 @@ def find(path: str | Path) -> Path:
     for candidate in (Path(path), SCENARIOS / path, SCENARIOS / f"{path}.toml"):
         if candidate.is_file():
             return candidate
-    known = ", ".join(sorted(p.stem for p in SCENARIOS.glob("*.toml") if "experiments" in _read(p)))
+    known = ", ".join(sorted(p.stem for p in SCENARIOS.glob("*.toml") if "experiments" in read_toml(p)))
     raise ConfigurationError(f"scenario file {str(path)!r} does not exist; those that come with armland are: {known}")
 
 
@@ -86,7 +86,12 @@ def schema() -> str:
     return json.dumps(Scenario.model_json_schema(), indent=2, ensure_ascii=False)
 
 
-def _read(path: Path) -> dict[str, Any]:
+def read_toml(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file.
+
+    Raises:
+        ConfigurationError: it cannot be read, or is not TOML.
+    """
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as e:
@@ -95,10 +100,11 @@ def _read(path: Path) -> dict[str, Any]:
         raise ConfigurationError(f"{path.name} cannot be read: {e.strerror}") from e
 
 
-def _update(data: dict[str, Any], extra: dict[str, Any]) -> None:
+def update(data: dict[str, Any], extra: dict[str, Any]) -> None:
+    """Replace values of the nested tables `data` by those of `extra`, in place."""
     for key, value in extra.items():
         if isinstance(value, dict) and isinstance(data.get(key), dict):
-            _update(data[key], value)
+            update(data[key], value)
         else:
             data[key] = value
 
@@ -114,7 +120,7 @@ def _merge_calibration(data: dict[str, Any], calibration: dict[str, Any], name: 
             try:
                 calibrated = Calibrated.model_validate_json(json.dumps(entry, default=str))
             except ValidationError as e:
-                problems += [_problem(x, Calibrated, f"{name}: {section}.{key}") for x in e.errors()]
+                problems += [problem(x, Calibrated, f"{name}: {section}.{key}") for x in e.errors()]
                 # The value itself is judged with the scenario, so that it is not also called missing.
                 if isinstance(entry, dict) and "value" in entry:
                     target.setdefault(key, entry["value"])
@@ -125,7 +131,8 @@ def _merge_calibration(data: dict[str, Any], calibration: dict[str, Any], name: 
     return problems
 
 
-def _problem(error: Any, model: type[Section] = Scenario, head: str = "") -> str:
+def problem(error: Any, model: type[Section] = Scenario, head: str = "") -> str:
+    """One of pydantic's errors about `model` in one line: path, what is wrong, what was got or would have been allowed."""
     where = ".".join(str(p) for p in error["loc"])
     message = error["msg"].removeprefix("Value error, ").replace("should be an object", "should be a table")
     if error["type"] == "extra_forbidden":

@@ -1,12 +1,15 @@
-"""The messages that flow through the loop: NumPy structured dtypes, fixed size, one table.
+"""The messages that flow through the loop: NumPy structured dtypes, fixed size, one table for each kind of run.
 
 Every message is held in a structured array of shape (1,): compiled code takes such an array for 0.1 µs, where a
 structured scalar costs 1 µs. The fields of a message lie so that its bytes are also its CDR payload (8-byte fields only),
-which is how the run log stores it. `n` is the number of the arm's joints.
+which is how the run log stores it. `n` is the number of the arm's joints. The table here is that of the paper's loop; other
+kinds of runs have their own, made of the same parts.
 """
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,11 +33,65 @@ class Field(NamedTuple):
     type: str = "f8"
 
 
-_TICK = Field("tick", (), "ms", "-", "time of the message in ticks of the base rate", "i8")
+@dataclass(frozen=True, eq=False)
+class MessageTable:
+    """The messages of one kind of run, and the layouts that follow from them.
+
+    Each message begins with its `tick`; `measurement` has the joint positions `q`.
+    """
+
+    kind: str
+    """What a run log calls it."""
+    messages: Mapping[str, tuple[Field, ...]]
+    """The fields of each message."""
+    prefix: str = ""
+    """What the ROS types of its messages begin with: a type's name has one definition."""
+
+    def layout(self, message: str, joints: int) -> np.dtype:
+        """The dtype of one message for an arm with `joints` joints.
+
+        Raises:
+            KeyError: unknown message; the known ones are the keys of `messages`.
+        """
+        return _layout(self, message, joints)
+
+    def tick_layout(self, joints: int) -> np.dtype:
+        """The dtype of all messages of one tick, nested by name."""
+        return _tick_layout(self, joints)
+
+
+# Kept, so that equal layouts are one object, which compiled code recognises fastest.
+@lru_cache
+def _layout(table: MessageTable, message: str, joints: int) -> np.dtype:
+    spec = []
+    for f in table.messages[message]:
+        shape = tuple(joints if s == "n" else int(s) for s in f.shape)
+        spec.append((f.name, f.type, shape) if shape else (f.name, f.type))
+    return np.dtype(spec)
+
+
+@lru_cache
+def _tick_layout(table: MessageTable, joints: int) -> np.dtype:
+    return np.dtype([(name, _layout(table, name, joints)) for name in table.messages])
+
+
+class AnyTick:
+    """All messages of the tick in progress: views, shape (1,) each, of one buffer that the recorder copies whole."""
+
+    table: ClassVar[MessageTable]
+    measurement: NDArray[np.void]
+
+    def __init__(self, joints: int) -> None:
+        self.buffer: NDArray[np.void] = np.zeros(1, self.table.tick_layout(joints))
+        for name in self.table.messages:
+            setattr(self, name, self.buffer[name])
+
+
+TICK = Field("tick", (), "ms", "-", "time of the message in ticks of the base rate", "i8")
 
 MESSAGES: dict[str, tuple[Field, ...]] = {
     "measurement": (
-        _TICK,
+        TICK,
         Field("uav_tick", (), "ms", "-", "tick at which the UAV took the sample that arrived last", "i8"),
         Field("q", ("n",), "rad", "joint", "joint positions"),
         Field("qd", ("n",), "rad/s", "joint", "joint velocities"),
@@ -43,7 +100,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("uav_rate", (3,), "rad/s", "body", "UAV angular velocity"),
     ),
     "estimate": (
-        _TICK,
+        TICK,
         Field("r", (3,), "m", "world", "pivot (hinge) position"),
         Field("v", (3,), "m/s", "world", "pivot velocity"),
         Field("quat", (4,), "1", "world<-body", "UAV attitude, scalar first"),
@@ -53,14 +110,14 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("tau_att", (3,), "N·m", "body", "torque of the onboard attitude controller, as the ground predicts it"),
     ),
     "reference": (
-        _TICK,
+        TICK,
         Field("r", (3,), "m", "world", "desired pivot position r_d"),
         Field("v", (3,), "m/s", "world", "desired pivot velocity"),
         Field("a", (3,), "m/s²", "world", "desired pivot acceleration"),
         Field("quat", (4,), "1", "world<-body", "desired UAV attitude q_d"),
     ),
     "command": (
-        _TICK,
+        TICK,
         Field("tau", ("n",), "N·m", "joint", "joint torques"),
         Field("delta_tau", (3,), "N·m", "body", "torque Δτ_att asked of the UAV beyond its attitude controller"),
         Field("thrust", (), "N", "body", "total thrust f_T asked of the UAV"),
@@ -68,7 +125,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("torque", (3,), "N·m", "world", "orientation torque of the end effector"),
     ),
     "health": (
-        _TICK,
+        TICK,
         Field("flags", (), "bits", "-", "see `Flag`", "i8"),
         Field("sigma_min", (), "1", "-", "smallest singular value of the end effector's Jacobian"),
         Field("joint_margin", (), "rad", "joint", "smallest distance of a joint to its range's end"),
@@ -76,7 +133,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("uav_age", (), "s", "-", "age of the UAV sample in use"),
     ),
     "proof": (
-        _TICK,
+        TICK,
         Field(
             "v2",
             (),
@@ -87,7 +144,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("v2_rate", (), "W", "-", "rate of V₂ that the proof promises (30)"),
     ),
     "truth": (
-        _TICK,
+        TICK,
         Field("r", (3,), "m", "world", "pivot position"),
         Field("v", (3,), "m/s", "world", "pivot velocity"),
         Field("v_cm", (3,), "m/s", "world", "velocity of the UAV's centre of mass"),
@@ -115,35 +172,17 @@ class Flag:
     """The UAV sample in use is older than the link's watchdog."""
 
 
-@lru_cache
-def layout(message: str, joints: int) -> np.dtype:
-    """The dtype of one message for an arm with `joints` joints.
-
-    Raises:
-        KeyError: unknown message; the known ones are the keys of `MESSAGES`.
-    """
-    spec = []
-    for f in MESSAGES[message]:
-        shape = tuple(joints if s == "n" else int(s) for s in f.shape)
-        spec.append((f.name, f.type, shape) if shape else (f.name, f.type))
-    return np.dtype(spec)
+PAPER_TABLE = MessageTable("paper", MESSAGES)
+layout, tick_layout = PAPER_TABLE.layout, PAPER_TABLE.tick_layout
 
 
-@lru_cache
-def tick_layout(joints: int) -> np.dtype:
-    """The dtype of all messages of one tick, nested by name."""
-    return np.dtype([(name, layout(name, joints)) for name in MESSAGES])
+class Tick(AnyTick):
+    """The messages of a tick of the paper's loop."""
 
-
-class Tick:
-    """All messages of the tick in progress: views, shape (1,) each, of one buffer that the recorder copies whole."""
-
-    def __init__(self, joints: int) -> None:
-        self.buffer: NDArray[np.void] = np.zeros(1, tick_layout(joints))
-        self.measurement = self.buffer["measurement"]
-        self.estimate = self.buffer["estimate"]
-        self.reference = self.buffer["reference"]
-        self.command = self.buffer["command"]
-        self.health = self.buffer["health"]
-        self.proof = self.buffer["proof"]
-        self.truth = self.buffer["truth"]
+    table = PAPER_TABLE
+    estimate: NDArray[np.void]
+    reference: NDArray[np.void]
+    command: NDArray[np.void]
+    health: NDArray[np.void]
+    proof: NDArray[np.void]
+    truth: NDArray[np.void]

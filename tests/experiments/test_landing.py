@@ -7,6 +7,8 @@ import pytest
 
 from armland.experiments.landing import LandingOutcome, campaign, fly_landing, fly_takeoff
 from armland.mission.landing_scenario import landing_scenario
+from armland.mission.records import LANDING_MESSAGES
+from armland.runtime.log import read_log
 
 KEYS = {
     "success",
@@ -52,9 +54,16 @@ def test_result_has_the_promised_keys():
     assert [a for a, _ in times[1:]] == [b for _, b in times[:-1]]
 
 
-def test_same_seed_lands_bit_for_bit_the_same():
-    again = fly_landing(landing_scenario(), 1)
+def test_same_seed_lands_bit_for_bit_the_same_and_so_says_the_log(tmp_path):
+    told = []
+    again = fly_landing(landing_scenario(), 1, lambda *phase: told.append(phase), tmp_path / "run.mcap")
     assert again.records.tobytes() == landed().records.tobytes()
+    log = read_log(tmp_path / "run.mcap")
+    for name in LANDING_MESSAGES:
+        assert log.messages[name].tobytes() == again.records[name].tobytes()
+    assert [phase for phase, _ in told] == [p.name for p in again.phases]
+    # The first tick of a phase is over when it is told of.
+    np.testing.assert_allclose([t - 1e-3 for _, t in told], [p.start_s for p in again.phases], atol=1e-9)
 
 
 def test_ideal_sensors_place_it_more_exactly():

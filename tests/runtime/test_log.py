@@ -6,6 +6,7 @@ from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
 
 from armland.errors import LogError
+from armland.mission.records import LANDING_MESSAGES, LandingTick
 from armland.records import MESSAGES
 from armland.runtime.log import read_log
 
@@ -15,13 +16,14 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "run.mcap"
 
 
-def rewritten(data: bytes, drop: str = "", **options) -> bytes:
+def rewritten(data: bytes, drop: str = "", metadata: dict[str, str | None] | None = None, **options) -> bytes:
     """The same run as another tool writes it: other chunks, compressed, schemas inside the chunks."""
     reader, stream = make_reader(io.BytesIO(data)), io.BytesIO()
     writer = Writer(stream, **options)
     writer.start()
     for record in reader.iter_metadata():
-        writer.add_metadata(record.name, record.metadata)
+        changed = record.metadata | (metadata or {})
+        writer.add_metadata(record.name, {k: v for k, v in changed.items() if v is not None})
     summary = reader.get_summary()
     for schema in summary.schemas.values():
         writer.register_schema(schema.name, schema.encoding, schema.data)
@@ -69,6 +71,46 @@ def test_log_that_another_tool_rewrote_is_the_same(path: Path, record, compressi
     assert log.complete
     for name in MESSAGES:
         assert log.messages[name].tobytes() == ticks[name].tobytes()
+
+
+def test_landing_log_that_another_tool_rewrote_is_the_same(path: Path, record) -> None:
+    ticks = record(path, 11, kind=LandingTick)
+    path.write_bytes(rewritten(path.read_bytes(), compression=CompressionType.ZSTD, chunk_size=3000))
+    log = read_log(path)
+    assert log.kind == "landing"
+    for name in LANDING_MESSAGES:
+        assert log.messages[name].tobytes() == ticks[name].tobytes()
+
+
+def test_log_that_does_not_say_its_kind_is_the_paper_s(path: Path, record) -> None:
+    ticks = record(path, 5)
+    path.write_bytes(rewritten(path.read_bytes(), metadata={"kind": None}))
+    log = read_log(path)
+    assert "kind" not in log.metadata
+    assert log.kind == "paper"
+    assert log.messages["proof"].tobytes() == ticks["proof"].tobytes()
+
+
+def test_log_of_an_unknown_kind_is_refused(path: Path, record) -> None:
+    record(path, 3)
+    path.write_bytes(rewritten(path.read_bytes(), metadata={"kind": "deck", "version": "9.1"}))
+    with pytest.raises(LogError, match=r"kind 'deck'; this version reads paper, landing; read it with armland 9\.1"):
+        read_log(path)
+
+
+def test_log_of_the_wrong_kind_is_refused(path: Path, record) -> None:
+    record(path, 3, kind=LandingTick)
+    path.write_bytes(rewritten(path.read_bytes(), metadata={"kind": "paper"}))
+    with pytest.raises(LogError, match=r"another layout of 'measurement': it has 'int64 arm_tick' where"):
+        read_log(path)
+
+
+def test_names_that_the_metadata_lists(path: Path, record) -> None:
+    record(path, 1, metadata={"phases": "self_test,guide,done"})
+    log = read_log(path)
+    assert log.names("phases") == ("self_test", "guide", "done")
+    with pytest.raises(LogError, match=r"names no 'faults'; its metadata has joints, kind, period_ns, phases, version"):
+        log.names("faults")
 
 
 def test_messages_outside_of_chunks_are_not_overlooked(path: Path, record) -> None:

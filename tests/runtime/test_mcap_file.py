@@ -14,7 +14,8 @@ from mcap.stream_reader import CRCValidationError, StreamReader, get_chunk_data_
 from mcap_ros2.decoder import DecoderFactory
 from mcap_ros2.writer import Writer as Ros2Writer
 
-from armland.records import MESSAGES, layout
+from armland.mission.records import LANDING_TABLE, LandingTick
+from armland.records import MESSAGES, PAPER_TABLE, AnyTick, MessageTable, Tick
 from armland.runtime.schema import schema_name, schema_text, topic
 
 PERIOD = 1_000_000
@@ -41,7 +42,7 @@ def test_library_reads_all_messages_in_time_order(path: Path, record, reader) ->
         of_tick = {t: (name, m) for t, name, m in found[number * len(MESSAGES) : (number + 1) * len(MESSAGES)]}
         for message in MESSAGES:
             name, m = of_tick[topic(message)]
-            assert (name, m.sequence) == (schema_name(message), number)
+            assert (name, m.sequence) == (schema_name(PAPER_TABLE, message), number)
             assert m.log_time == m.publish_time == number * PERIOD
             assert m.data == b"\0\1\0\0" + ticks[message][number].tobytes()
 
@@ -113,31 +114,32 @@ def test_damaged_chunk_is_noticed_by_the_library(path: Path, record) -> None:
         list(make_reader(io.BytesIO(bytes(data)), validate_crcs=True).iter_messages())
 
 
+@pytest.mark.parametrize("kind", [Tick, LandingTick])
 @pytest.mark.parametrize("joints", [1, 6, 7])
-def test_independent_decoder_finds_the_same_bits(path: Path, record, joints: int) -> None:
-    ticks = record(path, 3, joints=joints)
+def test_independent_decoder_finds_the_same_bits(path: Path, record, joints: int, kind: type[AnyTick]) -> None:
+    ticks, table = record(path, 3, joints=joints, kind=kind), kind.table
     decoded = 0
     with path.open("rb") as stream:
         for found in make_reader(stream, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
             name = found.channel.topic.removeprefix("/armland/")
             row = ticks[name][found.message.sequence]
-            for field in layout(name, joints).names:
+            for field in table.layout(name, joints).names:
                 value = getattr(found.decoded_message, field)
                 assert np.array(value, row[field].dtype).tobytes() == row[field].tobytes(), f"{name}.{field}"
                 decoded += 1
-    assert decoded == 3 * sum(len(fields) for fields in MESSAGES.values())
+    assert decoded == 3 * sum(len(fields) for fields in table.messages.values())
 
 
-@pytest.mark.parametrize("message", MESSAGES)
-def test_independent_encoder_makes_the_same_bytes(message: str) -> None:
+@pytest.mark.parametrize(("table", "message"), [(t, m) for t in (PAPER_TABLE, LANDING_TABLE) for m in t.messages])
+def test_independent_encoder_makes_the_same_bytes(table: MessageTable, message: str) -> None:
     """Alignment included: another writer's payload for these numbers is the encapsulation header and the record."""
-    row = np.zeros(1, layout(message, 7))
+    row = np.zeros(1, table.layout(message, 7))
     for number, field in enumerate(row.dtype.names, start=1):
         row[field] = number
     values = {field: row[field][0].tolist() for field in row.dtype.names}
     stream = io.BytesIO()
     writer = Ros2Writer(stream)
-    schema = writer.register_msgdef(schema_name(message), schema_text(message, 7))
+    schema = writer.register_msgdef(schema_name(table, message), schema_text(table, message, 7))
     writer.write_message(topic(message), schema, values, log_time=0, publish_time=0)
     writer.finish()
     stream.seek(0)

@@ -9,21 +9,25 @@ from mcap.reader import make_reader
 
 from armland import __version__
 from armland.errors import LogError
-from armland.records import MESSAGES, Tick, tick_layout
+from armland.mission.records import LandingTick
+from armland.records import MESSAGES, AnyTick, Tick
 from armland.runtime.log import read_log
 from armland.runtime.recorder import Recorder
 
 PERIOD = 1_000_000
 
 
+@pytest.mark.parametrize("kind", [Tick, LandingTick])
 @pytest.mark.parametrize("count", [1, 3, 4, 5, 8, 11])
-def test_file_and_memory_hold_every_tick(tmp_path: Path, record, count: int) -> None:
-    ticks = record(tmp_path / "run.mcap", count)
-    assert ticks.dtype == tick_layout(7)
+def test_file_and_memory_hold_every_tick(tmp_path: Path, record, count: int, kind: type[AnyTick]) -> None:
+    ticks = record(tmp_path / "run.mcap", count, kind=kind)
+    assert ticks.dtype == kind.table.tick_layout(7)
     assert ticks["health"]["tick"].tolist() == list(range(count))
     log = read_log(tmp_path / "run.mcap")
     assert log.complete
-    for name in MESSAGES:
+    assert log.kind == kind.table.kind
+    assert set(log.messages) == set(kind.table.messages)
+    for name in kind.table.messages:
         assert log.messages[name].tobytes() == ticks[name].tobytes()
 
 
@@ -51,7 +55,8 @@ def test_equal_runs_give_equal_files(tmp_path: Path, record) -> None:
 def test_metadata_and_scenario_are_in_the_file(tmp_path: Path, record) -> None:
     record(tmp_path / "run.mcap", 1, metadata={"seed": "3"}, scenario="wind = 4  # m/s, from Südwest\n")
     log = read_log(tmp_path / "run.mcap")
-    assert log.metadata == {"seed": "3", "version": __version__, "joints": "7", "period_ns": str(PERIOD)}
+    own = {"kind": "paper", "version": __version__, "joints": "7", "period_ns": str(PERIOD)}
+    assert log.metadata == {"seed": "3", **own}
     assert log.attachments == {"scenario.toml": "wind = 4  # m/s, from Südwest\n".encode()}
     with (tmp_path / "run.mcap").open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True)
@@ -116,8 +121,9 @@ def test_folder_that_does_not_exist_is_named(tmp_path: Path) -> None:
 
 
 def test_metadata_of_the_recorder_cannot_be_replaced(tmp_path: Path) -> None:
-    with pytest.raises(LogError, match=r"\['joints'\] are set by the recorder"):
-        Recorder(tmp_path / "run.mcap", Tick(7), PERIOD, {"joints": "6"})
+    for key, value in (("joints", "6"), ("kind", "landing")):
+        with pytest.raises(LogError, match=rf"\['{key}'\] are set by the recorder"):
+            Recorder(tmp_path / "run.mcap", Tick(7), PERIOD, {key: value})
     assert not (tmp_path / "run.mcap").exists()
 
 

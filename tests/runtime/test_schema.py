@@ -2,24 +2,34 @@ import numpy as np
 import pytest
 
 from armland.errors import LogError
-from armland.records import MESSAGES, layout
+from armland.mission.records import LANDING_TABLE
+from armland.records import PAPER_TABLE as PAPER
+from armland.records import MessageTable
 from armland.runtime.schema import check_schema, schema_layout, schema_name, schema_text, topic
+
+TABLES = (PAPER, LANDING_TABLE)
 
 
 @pytest.mark.parametrize("joints", [1, 6, 7])
-@pytest.mark.parametrize("message", MESSAGES)
-def test_definition_describes_the_layout(message: str, joints: int) -> None:
-    assert schema_layout(schema_text(message, joints)) == layout(message, joints)
+@pytest.mark.parametrize(("table", "message"), [(t, m) for t in TABLES for m in t.messages])
+def test_definition_describes_the_layout(table: MessageTable, message: str, joints: int) -> None:
+    assert schema_layout(schema_text(table, message, joints)) == table.layout(message, joints)
+
+
+def test_a_type_has_one_definition() -> None:
+    names = [schema_name(t, m) for t in TABLES for m in t.messages]
+    assert len(set(names)) == len(names)
 
 
 def test_line_says_type_name_meaning_unit_and_frame() -> None:
-    lines = schema_text("measurement", 7).splitlines()
+    lines = schema_text(PAPER, "measurement", 7).splitlines()
     assert lines[0] == "int64 tick  # time of the message in ticks of the base rate [ms]"
     assert lines[2] == "float64[7] q  # joint positions [rad], frame joint"
 
 
 def test_names_on_the_wire() -> None:
-    assert (topic("estimate"), schema_name("estimate")) == ("/armland/estimate", "armland_msgs/msg/Estimate")
+    assert (topic("estimate"), schema_name(PAPER, "estimate")) == ("/armland/estimate", "armland_msgs/msg/Estimate")
+    assert schema_name(LANDING_TABLE, "estimate") == "armland_msgs/msg/LandingEstimate"
 
 
 def test_comments_and_blank_lines_do_not_matter() -> None:
@@ -44,13 +54,13 @@ def test_line_that_is_no_fixed_number_is_refused(line: str) -> None:
     ],
 )
 def test_other_layout_is_named(old: str, new: str, difference: str) -> None:
-    text = schema_text("estimate", 7)
+    text = schema_text(PAPER, "estimate", 7)
     assert old in text
     with pytest.raises(LogError, match=difference):
-        check_schema("estimate", 7, text.replace(old, new))
+        check_schema(PAPER, "estimate", 7, text.replace(old, new))
 
 
 def test_other_number_of_joints_is_named() -> None:
-    check_schema("measurement", 7, schema_text("measurement", 7))
+    check_schema(PAPER, "measurement", 7, schema_text(PAPER, "measurement", 7))
     with pytest.raises(LogError, match=r"'float64\[6\] q' where this version has 'float64\[7\] q'"):
-        check_schema("measurement", 7, schema_text("measurement", 6))
+        check_schema(PAPER, "measurement", 7, schema_text(PAPER, "measurement", 6))

@@ -1,12 +1,12 @@
 """The command `armland`."""
 
 import sys
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
 from armland import __version__
-from armland.cli.landing import LAND_EPILOG, detector, land, takeoff
+from armland.cli.landing import LAND_EPILOG, TAKEOFF_EPILOG, detector, land, takeoff
 from armland.cli.paper import GAINS_EPILOG, PAPER_EPILOG, VERIFY_EPILOG, gains, paper, verify
 from armland.errors import ArmlandError
 
@@ -18,6 +18,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode="markdown",
 )
+
+
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells have it."""
 
 
 def _version(show: bool) -> None:
@@ -36,18 +40,25 @@ def root(
 
 
 @app.command()
-def schema() -> None:
+def schema(
+    kind: Annotated[Literal["paper", "landing"], typer.Argument(help="Which kind of scenario.")] = "paper",
+) -> None:
     """Print the JSON schema of a scenario file, for editors that complete and check TOML."""
-    from armland.config import schema as text
+    if kind == "landing":
+        from armland.mission.landing_schema import landing_schema
 
-    print(text())
+        print(landing_schema())
+    else:
+        from armland.config import schema as paper_schema
+
+        print(paper_schema())
 
 
 app.command(epilog=PAPER_EPILOG)(paper)
 app.command(epilog=VERIFY_EPILOG)(verify)
 app.command(epilog=GAINS_EPILOG)(gains)
 app.command(epilog=LAND_EPILOG)(land)
-app.command(epilog=LAND_EPILOG.replace("land", "takeoff"))(takeoff)
+app.command(epilog=TAKEOFF_EPILOG)(takeoff)
 app.command()(detector)
 
 
@@ -58,6 +69,8 @@ def main() -> None:
     except ArmlandError as e:
         print(f"armland: {e}", file=sys.stderr)
         sys.exit(2)
-    except KeyboardInterrupt:
-        print("armland: interrupted; what was recorded so far is on disk", file=sys.stderr)
-        sys.exit(130)
+    except SystemExit as end:
+        # That is what typer has made of Ctrl-C.
+        if end.code == INTERRUPTED:
+            print("armland: interrupted; a run log that was begun holds what was recorded so far", file=sys.stderr)
+        raise

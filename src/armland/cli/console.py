@@ -1,7 +1,8 @@
 """What the commands share: progress bars, folders, and whether a start compiles."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,34 @@ def reported(bar: Progress) -> Callable[[str, int, int], None]:
         bar.update(tasks[name], completed=done, total=total)
 
     return report
+
+
+@contextmanager
+def phases_told(console: Console, mission: str) -> Iterator[Callable[[str, float], None]]:
+    """Takes phase and time, s: one line that changes on a terminal, a line for each phase where there is none."""
+    if console.is_terminal:
+        with console.status(mission) as status:
+            yield lambda phase, t: status.update(f"{t:5.1f} s  {phase}")
+    else:
+        yield lambda phase, t: console.print(f"{t:5.1f} s  {phase}", highlight=False)
+
+
+@contextmanager
+def flights_told(console: Console, mission: str, total: int) -> Iterator[Callable[[bool], None]]:
+    """Takes the success of each flight of a campaign: a bar on a terminal, some ten lines where there is none."""
+    if console.is_terminal:
+        with progress_bar(console) as bar:
+            task = bar.add_task(mission, total=total)
+            yield lambda _: bar.advance(task)
+        return
+    flown: list[bool] = []
+
+    def tell(success: bool) -> None:
+        flown.append(success)
+        if len(flown) * 10 // total > (len(flown) - 1) * 10 // total:
+            console.print(f"{len(flown)} of {total} flown, {sum(flown)} succeed", highlight=False)
+
+    yield tell
 
 
 def make_writable(out: Path) -> None:

@@ -2,98 +2,165 @@
 
 import json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 from rich.console import Console
 
-from armland.cli.console import announce_compilation, make_writable, progress_bar
+from armland.cli.console import announce_compilation, flights_told, make_writable, phases_told
+from armland.errors import ConfigurationError
 
-LAND_EPILOG = """**Examples**
+_EPILOG = """**Examples**
 
-`armland land` flies one landing of the scenario `landing`.
+`armland COMMAND` flies one MISSION of the scenario that comes with armland; figures, log and result.json go to out/COMMAND.
 
-`armland land --seed 7 --json` prints its result alone.
+`armland COMMAND --seed 7 --json | jq .reason` prints the result alone.
 
-`armland land --seeds 200` flies 200 seeds over all cores.
+`armland COMMAND calm.toml --out /tmp/calm` flies a scenario of your own; `armland schema landing` says what it may hold.
 
-Exit code: 0 if it succeeds, 1 if not (says why), 2 for bad input.
+`armland COMMAND --set imperfections.camera=false --set place.catch_m='[0.6, 0.0, 0.86]'` changes single values.
+
+`armland COMMAND --set 'faults=[{kind="link_loss", phase="PHASE", after_s=0.5}]'` lets a device fail, as `[[faults]]` with the
+same keys does in a scenario's file.
+
+`armland COMMAND --seeds 200` flies 200 seeds over all cores and writes campaign.json instead.
+
+Exit code: 0 if it succeeds (of a campaign: every seed), 1 if not (says why), 2 for bad input.
 """
+
+LAND_EPILOG = _EPILOG.replace("COMMAND", "land").replace("MISSION", "landing").replace("PHASE", "carry")
+TAKEOFF_EPILOG = _EPILOG.replace("COMMAND", "takeoff").replace("MISSION", "take-off").replace("PHASE", "carry_up")
+
+ScenarioArgument = Annotated[
+    str, typer.Argument(help="Landing scenario (TOML), or the name of one that comes with armland.")
+]
+Seed = Annotated[
+    int | None,
+    typer.Option(min=0, help="Seed of every random stream, the scenario's if absent; the first of a campaign."),
+]
+Seeds = Annotated[int, typer.Option(min=1, help="Fly this many seeds and print how many succeed.")]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Processes of a campaign; all cores if absent.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Replace a value of the scenario: dotted key, value as in TOML. Repeatable."
+    ),
+]
+Out = Annotated[Path, typer.Option(help="Folder for figures, log and result.json.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print result.json alone on standard output.")]
+Log = Annotated[bool, typer.Option("--log/--no-log", help="Write the run log (MCAP) of a single flight.")]
+Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures of a single flight.")]
 
 
 def land(
-    scenario: Annotated[
-        str, typer.Argument(help="Landing scenario (TOML), or the name of one that comes with armland.")
-    ] = "landing",
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="Seed of every random stream; the first of a campaign.")
-    ] = None,
-    seeds: Annotated[int, typer.Option(min=1, help="Fly this many seeds and print how many succeed.")] = 1,
-    out: Annotated[Path, typer.Option(help="Folder for figures and result.json.")] = Path("out/land"),
-    as_json: Annotated[bool, typer.Option("--json", help="Print result.json alone on standard output.")] = False,
-    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")] = True,
+    scenario: ScenarioArgument = "landing",
+    seed: Seed = None,
+    seeds: Seeds = 1,
+    jobs: Jobs = None,
+    settings: Settings = None,
+    out: Out = Path("out/land"),
+    as_json: AsJson = False,
+    log: Log = True,
+    figures: Figures = True,
 ) -> None:
     """Land a UAV: approach, capture, hand-over, set-down and release, with live progress by phase."""
-    _fly("landing", scenario, seed, seeds, out, as_json, figures)
+    _command("landing", scenario, seed, seeds, jobs, settings, out, as_json, log, figures)
 
 
 def takeoff(
-    scenario: Annotated[
-        str, typer.Argument(help="Landing scenario (TOML), or the name of one that comes with armland.")
-    ] = "landing",
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="Seed of every random stream; the first of a campaign.")
-    ] = None,
-    seeds: Annotated[int, typer.Option(min=1, help="Fly this many seeds and print how many succeed.")] = 1,
-    out: Annotated[Path, typer.Option(help="Folder for figures and result.json.")] = Path("out/takeoff"),
-    as_json: Annotated[bool, typer.Option("--json", help="Print result.json alone on standard output.")] = False,
-    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")] = True,
+    scenario: ScenarioArgument = "landing",
+    seed: Seed = None,
+    seeds: Seeds = 1,
+    jobs: Jobs = None,
+    settings: Settings = None,
+    out: Out = Path("out/takeoff"),
+    as_json: AsJson = False,
+    log: Log = True,
+    figures: Figures = True,
 ) -> None:
-    """Take off from the cradle: lift, spin up, carry upwards, release, fly off."""
-    _fly("takeoff", scenario, seed, seeds, out, as_json, figures)
+    """Take off from the cradle: lift, spin up, carry upwards, release, fly off; with live progress by phase."""
+    _command("takeoff", scenario, seed, seeds, jobs, settings, out, as_json, log, figures)
 
 
-def _fly(mission: Any, scenario: str, seed: int | None, seeds: int, out: Path, as_json: bool, figures: bool) -> None:
+def _command(
+    mission: Literal["landing", "takeoff"],
+    scenario: str,
+    seed: int | None,
+    seeds: int,
+    jobs: int | None,
+    settings: list[str] | None,
+    out: Path,
+    as_json: bool,
+    log: bool,
+    figures: bool,
+) -> None:
+    from armland.cli.settings import parse_settings
+    from armland.mission.landing_scenario import landing_scenario
+
+    loaded = landing_scenario(scenario, parse_settings(settings or []))
     console = Console(stderr=True)
     announce_compilation(console, "mission", "landing.landing_tick")
-    from armland.experiments.landing import campaign, fly_landing, fly_takeoff
-    from armland.mission.landing_scenario import landing_scenario
-    from armland.mission.landing_setup import set_up
+    from armland.experiments.landing import prepare
 
-    loaded = landing_scenario(scenario)
-    if seed is not None:
-        loaded = loaded._replace(landing=loaded.landing.model_copy(update={"seed": seed}))
-    set_up(loaded, mission)
+    flight = prepare(loaded, mission, seed)
     make_writable(out)
-    if seeds > 1:
-        first = loaded.landing.seed
-        with progress_bar(console) as bar:
-            task = bar.add_task(mission, total=seeds)
-            outcomes = campaign(loaded, range(first, first + seeds), mission, done=lambda _: bar.advance(task))
-        text = json.dumps([o.result() for o in outcomes], indent=2)
-        (out / "campaign.json").write_text(text + "\n", encoding="utf-8")
-        good = sum(o.success for o in outcomes)
-        print(text if as_json else f"{good} of {seeds} succeed; each outcome is in {out / 'campaign.json'}")
-        for o in outcomes:
-            if not o.success:
-                console.print(f"seed {o.seed}: {o.reason}", highlight=False)
-        raise typer.Exit(0 if good == seeds else 1)
-    with console.status(mission) as status:
-        fly = fly_landing if mission == "landing" else fly_takeoff
-        outcome = fly(loaded, progress=lambda phase, t: status.update(f"{t:5.1f} s  {phase}"))
+    success = (
+        _campaign(flight.setup, seeds, jobs, out, as_json, console)
+        if seeds > 1
+        else _fly(flight, out, as_json, log, figures, console)
+    )
+    raise typer.Exit(0 if success else 1)
+
+
+def _fly(flight: Any, out: Path, as_json: bool, log: bool, figures: bool, console: Console) -> bool:
+    from armland.experiments.landing import fly
+
+    setup = flight.setup
+    mission, file = setup.mission, out / f"{setup.mission}.mcap"
+    # What an earlier flight left is not to be taken for this one's, should this one not get to its end.
+    _remove(out / "result.json", file, *(out / f"{mission}_overview.{kind}" for kind in ("pdf", "png")))
+    with phases_told(console, mission) as tell:
+        outcome = fly(flight, tell, file if log else None)
     text = json.dumps(outcome.result(), indent=2)
     (out / "result.json").write_text(text + "\n", encoding="utf-8")
     if figures:
         from armland.view.landing_figures import draw_landing_figures
 
-        draw_landing_figures(out, outcome, loaded.demonstrator.run.rate_hz, mission)
+        draw_landing_figures(out, outcome, setup.scenario.demonstrator.run.rate_hz, mission)
     if as_json:
         print(text)
     else:
         from armland.view.landing_report import print_landing
 
         print_landing(outcome, out)
-    raise typer.Exit(0 if outcome.success else 1)
+    return outcome.success
+
+
+def _campaign(setup: Any, seeds: int, jobs: int | None, out: Path, as_json: bool, console: Console) -> bool:
+    from armland.experiments.landing import campaign
+
+    file, first = out / "campaign.json", setup.scenario.landing.seed
+    _remove(file)
+    with flights_told(console, setup.mission, seeds) as tell:
+        outcomes = campaign(
+            setup.scenario, range(first, first + seeds), setup.mission, jobs, done=lambda o: tell(o.success)
+        )
+    text = json.dumps([o.result() for o in outcomes], indent=2)
+    file.write_text(text + "\n", encoding="utf-8")
+    good = sum(o.success for o in outcomes)
+    print(text if as_json else f"{good} of {seeds} succeed; each outcome is in {file}")
+    for o in outcomes:
+        if not o.success:
+            console.print(f"seed {o.seed}: {o.reason}", highlight=False)
+    return good == seeds
+
+
+def _remove(*files: Path) -> None:
+    for file in files:
+        try:
+            file.unlink(missing_ok=True)
+        except OSError as e:
+            raise ConfigurationError(f"--out: {str(file)!r} of an earlier run cannot be replaced: {e.strerror}") from e
 
 
 def detector(

@@ -2,10 +2,11 @@
 
 import contextlib
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,20 @@ from armland.mission.landing_controller import LandingController
 from armland.mission.landing_scenario import LandingScenario
 from armland.mission.landing_setup import Setup, set_up
 from armland.mission.records import LandingTick
+from armland.mission.supervisor import FAULTS
 from armland.plant.landing import LandingPlant
+from armland.plant.landing_start import check_cradle, check_start
+from armland.runtime.loop import run_loop
+from armland.runtime.recorder import Recorder
 
 SETTLE_S = 3.0
 """How long a mission that has ended is watched further."""
 
+BLOCK = 250
+"""Ticks that a killed process may lose."""
+
 Progress = Callable[[str, float], None]
+Mission = Literal["landing", "takeoff"]
 
 
 @dataclass(frozen=True)
@@ -51,78 +60,129 @@ class LandingOutcome:
         return data
 
 
-def fly_landing(scenario: LandingScenario, seed: int | None = None, progress: Progress | None = None) -> LandingOutcome:
+class Flight(NamedTuple):
+    """A mission that nothing speaks against: controller and plant are ready."""
+
+    setup: Setup
+    plant: LandingPlant
+
+
+def prepare(scenario: LandingScenario, mission: Mission = "landing", seed: int | None = None) -> Flight:
+    """Check everything about a mission before anything moves or is written.
+
+    Args:
+        scenario: of `landing_scenario`.
+        mission: landing or take-off.
+        seed: replaces the scenario's.
+
+    Raises:
+        ConfigurationError: what is refused, with the value and its bound.
+    """
+    if seed is not None:
+        scenario = scenario._replace(landing=scenario.landing.model_copy(update={"seed": seed}))
+    setup = set_up(scenario, mission)
+    plant = LandingPlant(scenario, setup.home, "air" if mission == "landing" else "cradle")
+    check_cradle(scenario, plant.scene)
+    if mission == "landing":
+        check_start(scenario, plant.scene, setup.home)
+    return Flight(setup, plant)
+
+
+def fly_landing(
+    scenario: LandingScenario, seed: int | None = None, progress: Progress | None = None, log: Path | None = None
+) -> LandingOutcome:
     """Fly one landing and judge it.
 
     Args:
         scenario: of `landing_scenario`.
         seed: replaces the scenario's.
         progress: called with phase and time, s, when a phase begins.
+        log: file of the run log; none is written if absent.
 
     Raises:
         ConfigurationError: what is refused before anything moves.
+        LogError: the log cannot be written.
     """
-    return _fly(scenario, "landing", seed, progress)
+    return fly(prepare(scenario, "landing", seed), progress, log)
 
 
-def fly_takeoff(scenario: LandingScenario, seed: int | None = None, progress: Progress | None = None) -> LandingOutcome:
-    """Fly one take-off from the cradle and judge it; arguments and errors as for `fly_landing`."""
-    return _fly(scenario, "takeoff", seed, progress)
-
-
-def _fly(
-    scenario: LandingScenario, mission: Literal["landing", "takeoff"], seed: int | None, progress: Progress | None
+def fly_takeoff(
+    scenario: LandingScenario, seed: int | None = None, progress: Progress | None = None, log: Path | None = None
 ) -> LandingOutcome:
-    if seed is not None:
-        scenario = scenario._replace(landing=scenario.landing.model_copy(update={"seed": seed}))
-    setup = set_up(scenario, mission)
-    plant = LandingPlant(scenario, setup.home, "air" if mission == "landing" else "cradle")
-    records, wall = run(setup, plant, progress)
-    rate = scenario.demonstrator.run.rate_hz
-    judge = judge_landing if mission == "landing" else judge_takeoff
+    """Fly one take-off from the cradle and judge it; arguments and errors as for `fly_landing`."""
+    return fly(prepare(scenario, "takeoff", seed), progress, log)
+
+
+def fly(flight: Flight, progress: Progress | None = None, log: Path | None = None) -> LandingOutcome:
+    """Fly what was prepared, and judge it; arguments and errors as for `fly_landing`."""
+    setup, plant = flight
+    records, wall = run(setup, plant, progress, log)
+    rate = setup.scenario.demonstrator.run.rate_hz
+    judge = judge_landing if setup.mission == "landing" else judge_takeoff
     judgement: Judgement = judge(records, setup, plant.scene.put_down, rate)
     simulated = len(records) / rate
     return LandingOutcome(
-        **judgement._asdict(), real_time_factor=simulated / wall, seed=scenario.landing.seed, records=records
+        **judgement._asdict(), real_time_factor=simulated / wall, seed=setup.scenario.landing.seed, records=records
     )
 
 
-def run(setup: Setup, plant: LandingPlant, progress: Progress | None = None) -> tuple[NDArray[np.void], float]:
-    """Run a mission until it has ended and settled; returns the ticks and the wall-clock time, s."""
+def run(
+    setup: Setup, plant: LandingPlant, progress: Progress | None = None, log: Path | None = None
+) -> tuple[NDArray[np.void], float]:
+    """Run a mission until it has ended and settled; returns the ticks and the wall-clock time, s, the log's included."""
     controller, tick = LandingController(setup), LandingTick(setup.arm.joints)
-    rate = setup.scenario.demonstrator.run.rate_hz
-    last = round(setup.scenario.landing.duration_s * rate)
-    rows = np.empty(last, tick.buffer.dtype)
-    opaque, source = rows.view(np.dtype((np.void, rows.itemsize))), tick.buffer.view(np.uint8).data
-    plant.connect()
-    read, update, command = plant.read, controller.update, plant.command
-    phase = tick.mission["phase"]
-    now, k, begin = -1, 0, time.perf_counter()
-    try:
+    scenario, rate = setup.scenario, setup.scenario.demonstrator.run.rate_hz
+    watch = _Watch(controller, tick, rate, progress)
+    metadata = log_metadata(setup)
+    with Recorder(
+        log, tick, round(1e9 / rate), metadata, scenario=scenario.text, keep_in_memory=True, block=BLOCK
+    ) as recorder:
+        run_loop(plant, controller, recorder, tick, watch)
+    wall = time.perf_counter() - watch.begin
+    return recorder.ticks, wall
+
+
+def log_metadata(setup: Setup) -> dict[str, str]:
+    """What a log says about a mission: by the lists of names a reader finds the phase and the fault of `mission`'s numbers."""
+    landing = setup.scenario.landing
+    data = {
+        "mission": setup.mission,
+        "title": landing.title,
+        "seed": str(landing.seed),
+        "phases": ",".join(setup.table.names),
+        "faults": ",".join(FAULTS),
+    }
+    return data | ({"overrides": setup.scenario.overrides} if setup.scenario.overrides else {})
+
+
+class _Watch:
+    """The numbers of a mission's ticks, until it has ended and settled or its time is over; tells of phases that begin."""
+
+    def __init__(self, controller: LandingController, tick: LandingTick, rate: int, progress: Progress | None) -> None:
+        self._controller, self._phase, self._rate, self._progress = controller, tick.mission["phase"], rate, progress
+        self.begin = time.perf_counter()
+        """When the first tick was over, which loads compiled code."""
+
+    def __iter__(self) -> Iterator[int]:
+        phase, rate, now, k = self._phase, self._rate, -1, 0
+        last = round(self._controller.setup.scenario.landing.duration_s * rate)
         while k < last:
-            read(tick)
-            update(tick)
-            command(tick)
-            opaque[k] = source
+            yield k
             k += 1
             if k == 1:
-                # The first tick loads compiled code.
-                begin = time.perf_counter()
+                self.begin = time.perf_counter()
             if phase[0] != now:
                 now = int(phase[0])
-                if progress is not None:
-                    progress(controller.phase, k / rate)
-                if controller.final:
+                if self._progress is not None:
+                    self._progress(self._controller.phase, k / rate)
+                if self._controller.final:
                     last = min(last, k + round(SETTLE_S * rate))
-    finally:
-        plant.stop()
-    return rows[:k], time.perf_counter() - begin
 
 
 def campaign(
     scenario: LandingScenario,
     seeds: range,
-    mission: Literal["landing", "takeoff"] = "landing",
+    mission: Mission = "landing",
     jobs: int | None = None,
     done: Callable[[LandingOutcome], None] | None = None,
 ) -> list[LandingOutcome]:
@@ -146,7 +206,6 @@ def campaign(
     return out
 
 
-def _one(task: tuple[LandingScenario, Literal["landing", "takeoff"], int]) -> LandingOutcome:
-    scenario, mission, seed = task
-    outcome = _fly(scenario, mission, seed, None)
+def _one(task: tuple[LandingScenario, Mission, int]) -> LandingOutcome:
+    outcome = fly(prepare(*task))
     return LandingOutcome(**{**outcome.__dict__, "records": None})

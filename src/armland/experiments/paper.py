@@ -108,7 +108,7 @@ def run_experiments(
         report = None if progress is None else _reporter(progress, name, ticks)
         period_ns = round(1e9 / rate)
         with Recorder(file, tick, period_ns, metadata, scenario=scenario_text, keep_in_memory=True) as recorder:
-            wall += run_loop(plant, controller, recorder, tick, ticks, report)
+            wall += run_loop(plant, controller, recorder, tick, range(ticks), report)
             begin = time.perf_counter()
         wall += time.perf_counter() - begin
         records[name] = recorder.ticks

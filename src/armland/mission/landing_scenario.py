@@ -1,13 +1,13 @@
 """What a landing's scenario holds beyond the demonstrator's: place, gear, imperfections of the sensors, thresholds, faults."""
 
 import json
-import tomllib
+from copy import deepcopy
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from pydantic import Field, ValidationError, model_validator
 
-from armland.config import SCENARIOS, load_scenario
+from armland.config import SCENARIOS, load_scenario, problem, read_toml, update
 from armland.errors import ConfigurationError
 from armland.scenario import Finite, NonNegative, Positive, Positive3, Scenario, Section, Vector3
 
@@ -126,7 +126,7 @@ class Envelope(Section):
 
     hinge_force_share: Positive = Field(0.6, description="largest hinge force over the magnet's rating")
     joint_speed_share: Positive = Field(0.9, description="of the joints' rated speed at which the arm is stopped")
-    joint_speed_rad_s: tuple[Positive, ...] = (1.92, 1.92, 2.23, 2.23, 2.27, 3.14, 3.14)
+    joint_speed_rad_s: tuple[Positive, ...] = Field((1.92, 1.92, 2.23, 2.23, 2.27, 3.14, 3.14), min_length=1)
     torque_rate_nm_s: Positive = Field(1500.0, description="largest rate of a joint torque")
     joint_margin_rad: NonNegative = Field(
         0.02, description="distance to a joint's end at which only motion away is left"
@@ -145,7 +145,9 @@ class Landing(Section):
     title: str = "landing"
     base: str = Field("paper", description="scenario of arm, tool, UAV and link")
     seed: int = Field(1, ge=0)
-    duration_s: Positive = Field(45.0, description="after which a mission that has not ended counts as not landed")
+    duration_s: Finite = Field(
+        45.0, ge=1.0, description="after which a mission that has not ended counts as not landed"
+    )
     place: Place = Place()
     eye: Eye = Eye()
     imperfections: Imperfections = Imperfections()
@@ -199,6 +201,10 @@ class LandingScenario(NamedTuple):
 
     demonstrator: Scenario
     landing: Landing
+    text: str = ""
+    """The file as it was read."""
+    overrides: str = ""
+    """What replaced values of the file, as JSON."""
 
 
 def landing_scenario(path: str | Path = "landing", overrides: dict[str, Any] | None = None) -> LandingScenario:
@@ -211,29 +217,42 @@ def landing_scenario(path: str | Path = "landing", overrides: dict[str, Any] | N
     Raises:
         ConfigurationError: one message that lists every error with its path.
     """
-    candidates = (Path(path), SCENARIOS / path, SCENARIOS / f"{path}.toml")
-    file = next((c for c in candidates if c.is_file()), None)
-    if file is None:
-        raise ConfigurationError(f"scenario file {str(path)!r} does not exist; armland comes with 'landing'")
+    file = _find(path)
+    data = read_toml(file)
+    update(data, deepcopy(overrides or {}))
+    demonstrator = data.pop("demonstrator", {})
+    head = f"{file.name} as overridden" if overrides else file.name
+    problems = [] if isinstance(demonstrator, dict) else [f"demonstrator: should be a table (got {demonstrator!r})"]
     try:
-        data = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as e:
-        raise ConfigurationError(f"{file.name} is not valid TOML: {e}") from e
-    _update(data, overrides or {})
-    demonstrator_overrides = data.pop("demonstrator", {})
-    try:
-        landing = Landing.model_validate_json(json.dumps(data))
+        landing = Landing.model_validate_json(json.dumps(data, default=str))
     except ValidationError as e:
-        lines = [
-            f"{'.'.join(map(str, x['loc'])) or file.stem}: {x['msg'].removeprefix('Value error, ')}" for x in e.errors()
-        ]
-        raise ConfigurationError("\n  ".join([f"{file.name}: {len(lines)} problem(s)", *lines])) from e
-    return LandingScenario(load_scenario(landing.base, demonstrator_overrides), landing)
+        problems += [line for x in e.errors() for line in problem(x, Landing).split("\n")]
+    if problems:
+        raise ConfigurationError(
+            "\n  ".join([f"{head}: {len(problems)} problem{'s' if len(problems) > 1 else ''}", *problems])
+        )
+    text = json.dumps(overrides, sort_keys=True, default=str) if overrides else ""
+    return LandingScenario(
+        _demonstrator(landing.base, demonstrator, file, head), landing, file.read_text("utf-8"), text
+    )
 
 
-def _update(data: dict[str, Any], extra: dict[str, Any]) -> None:
-    for key, value in extra.items():
-        if isinstance(value, dict) and isinstance(data.get(key), dict):
-            _update(data[key], value)
-        else:
-            data[key] = value
+def _find(path: str | Path) -> Path:
+    for candidate in (Path(path), SCENARIOS / path, SCENARIOS / f"{path}.toml"):
+        if candidate.is_file():
+            return candidate
+    known = ", ".join(sorted(p.stem for p in SCENARIOS.glob("*.toml") if "base" in read_toml(p)))
+    raise ConfigurationError(f"scenario file {str(path)!r} does not exist; armland comes with {known}")
+
+
+def _demonstrator(base: str, extra: dict[str, Any], file: Path, head: str) -> Scenario:
+    # Files are relative to the folder of the scenario that names them.
+    for section in ("arm", "uav"):
+        part = extra.get(section)
+        if isinstance(part, dict) and isinstance(part.get("file"), str) and (file.parent / part["file"]).is_file():
+            part["file"] = str((file.parent / part["file"]).resolve())
+    beside = file.parent / base
+    try:
+        return load_scenario(beside if beside.is_file() else base, extra)
+    except ConfigurationError as e:
+        raise ConfigurationError(f"{head}: base and [demonstrator]: {e}") from e

@@ -19,6 +19,7 @@ from armland.mission.landing_state import parameters_layout
 from armland.mission.phase_table import Table, compile_table
 from armland.mission.phases import Phase
 from armland.mission.takeoff_procedure import TAKEOFF
+from armland.mission.tracking_reach import check_tracking, out_of_reach
 from armland.models.arm import ArmModel
 from armland.models.parameters import arm_model
 from armland.models.workspace import check_path, home_poses
@@ -100,18 +101,21 @@ def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "
 def _check_weight(scenario: LandingScenario, weight: float) -> None:
     landing, rotors = scenario.landing, scenario.demonstrator.rotors
     held = landing.envelope.hinge_force_share * landing.magnet_rating_n
+    problems = []
     if weight > held:
-        raise ConfigurationError(
+        problems.append(
             f"the UAV weighs {weight:.1f} N; the magnet may be loaded with {held:.1f} N, "
             f"{landing.envelope.hinge_force_share:g} of its rating of {landing.magnet_rating_n:g} N: "
             f"at most {held / GRAVITY:.2f} kg can be held"
         )
     lift = 0.9 * 4.0 * rotors.max_thrust_n
     if weight > lift:
-        raise ConfigurationError(
+        problems.append(
             f"the UAV weighs {weight:.2f} N; its rotors give {4.0 * rotors.max_thrust_n:.2f} N, of which {lift:.2f} N may go "
             f"into hovering: at most {lift / GRAVITY:.3f} kg can fly"
         )
+    if problems:
+        raise ConfigurationError("\n  ".join(problems))
 
 
 def way_points(landing: Landing, mission: str) -> list[Array]:
@@ -129,7 +133,7 @@ def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: floa
     """Joint positions (n,) at the mission's first way point.
 
     Raises:
-        WorkspaceError: a way point out of reach.
+        WorkspaceError: a way point, or where the arm follows the UAV, out of reach.
         ConfigurationError: joint torques beyond their limits.
     """
     landing = scenario.landing
@@ -156,12 +160,13 @@ def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: floa
         if margin > MARGIN_RAD:
             break
     if widest < 0.0:
-        what = str(refusal).partition(" s: ")[2].partition("; shorten")[0]
         raise WorkspaceError(
-            f"the arm's way leaves its workspace: {what}; it leads from below place.catch_m = {landing.place.catch_m} to "
-            f"place.put_down_m = {landing.place.put_down_m} and {landing.place.above_m:g} m above it: bring them nearer to the base"
+            f"the arm cannot follow the {mission}'s way: {out_of_reach(refusal)}; the way is given by place.catch_m = "
+            f"{landing.place.catch_m}, put_down_m = {landing.place.put_down_m}, wait_below_m, above_m and withdraw_m"
         ) from refusal
     _check_torque(arm, best, fine, weight)
+    if mission == "landing":
+        check_tracking(arm, best, UPRIGHT, landing)
     return best
 
 

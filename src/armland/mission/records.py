@@ -6,18 +6,14 @@
 | camera | `camera_capture` is the tick of the exposure; `camera_fresh` is 1 in the tick of arrival |
 """
 
-from functools import lru_cache
-
 import numpy as np
 from numpy.typing import NDArray
 
-from armland.records import Field
-
-_TICK = Field("tick", (), "ms", "-", "time of the message in ticks of the base rate", "i8")
+from armland.records import TICK, AnyTick, Field, MessageTable
 
 LANDING_MESSAGES: dict[str, tuple[Field, ...]] = {
     "measurement": (
-        _TICK,
+        TICK,
         Field("arm_tick", (), "ms", "-", "tick at which the joints were sampled", "i8"),
         Field("wrench_tick", (), "ms", "-", "tick at which the force-torque sensor was sampled", "i8"),
         Field("uav_tick", (), "ms", "-", "tick at which the UAV took the sample that arrived last", "i8"),
@@ -35,7 +31,7 @@ LANDING_MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("magnet_force", (), "N", "-", "force in contact that the coil's current promises"),
     ),
     "estimate": (
-        _TICK,
+        TICK,
         Field("r", (3,), "m", "world", "end effector point: the pivot of a plate that is gripped flush"),
         Field("v", (3,), "m/s", "world", "its velocity"),
         Field("plate", (3,), "m", "world", "pivot of the hinge on the UAV, from camera and link"),
@@ -52,7 +48,7 @@ LANDING_MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("ground_share", (), "1", "-", "share of the weight on cradle or ground"),
     ),
     "mission": (
-        _TICK,
+        TICK,
         Field("phase", (), "1", "-", "index into the mission's phases", "i8"),
         Field("retries", (), "1", "-", "missed captures so far", "i8"),
         Field("fault", (), "1", "-", "index into the faults; 0 is none", "i8"),
@@ -60,14 +56,14 @@ LANDING_MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("progress", (), "1", "-", "how far the phase's move is, 0 to 1"),
     ),
     "reference": (
-        _TICK,
+        TICK,
         Field("r", (3,), "m", "world", "desired position of the end effector point"),
         Field("v", (3,), "m/s", "world", "its velocity"),
         Field("a", (3,), "m/s²", "world", "its acceleration"),
         Field("quat", (4,), "1", "world<-body", "desired UAV attitude"),
     ),
     "command": (
-        _TICK,
+        TICK,
         Field("uav_mode", (), "1", "-", "see `UavMode`", "i8"),
         Field("magnet", (), "1", "-", "0 off, 1 on, 2 self-test", "i8"),
         Field("brake", (), "1", "-", "1 where the arm's brakes shall be on", "i8"),
@@ -77,7 +73,7 @@ LANDING_MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("force", (3,), "N", "world", "force that the law wants the end effector to put on the UAV"),
     ),
     "health": (
-        _TICK,
+        TICK,
         Field("flags", (), "bits", "-", "see `Limit`: what the supervisor had to cut", "i8"),
         Field("sigma_min", (), "1", "-", "smallest singular value of the end effector's Jacobian"),
         Field("joint_margin", (), "rad", "joint", "smallest distance of a joint to its range's end"),
@@ -85,7 +81,7 @@ LANDING_MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("torque_ratio", (), "1", "joint", "largest joint torque over its limit, before limiting"),
     ),
     "truth": (
-        _TICK,
+        TICK,
         Field("r", (3,), "m", "world", "pivot on the UAV"),
         Field("v", (3,), "m/s", "world", "its velocity"),
         Field("r_cm", (3,), "m", "world", "UAV's centre of mass"),
@@ -145,35 +141,17 @@ LIMIT_NAMES = {
 }
 
 
-@lru_cache
-def landing_layout(message: str, joints: int) -> np.dtype:
-    """The dtype of one message for an arm with `joints` joints.
-
-    Raises:
-        KeyError: unknown message; the known ones are the keys of `LANDING_MESSAGES`.
-    """
-    spec = []
-    for f in LANDING_MESSAGES[message]:
-        shape = tuple(joints if s == "n" else int(s) for s in f.shape)
-        spec.append((f.name, f.type, shape) if shape else (f.name, f.type))
-    return np.dtype(spec)
+LANDING_TABLE = MessageTable("landing", LANDING_MESSAGES, prefix="Landing")
+landing_layout, landing_tick_layout = LANDING_TABLE.layout, LANDING_TABLE.tick_layout
 
 
-@lru_cache
-def landing_tick_layout(joints: int) -> np.dtype:
-    """The dtype of all messages of one tick, nested by name."""
-    return np.dtype([(name, landing_layout(name, joints)) for name in LANDING_MESSAGES])
+class LandingTick(AnyTick):
+    """The messages of a tick of a landing or a take-off."""
 
-
-class LandingTick:
-    """All messages of the tick in progress: views, shape (1,) each, of one buffer."""
-
-    def __init__(self, joints: int) -> None:
-        self.buffer: NDArray[np.void] = np.zeros(1, landing_tick_layout(joints))
-        self.measurement = self.buffer["measurement"]
-        self.estimate = self.buffer["estimate"]
-        self.mission = self.buffer["mission"]
-        self.reference = self.buffer["reference"]
-        self.command = self.buffer["command"]
-        self.health = self.buffer["health"]
-        self.truth = self.buffer["truth"]
+    table = LANDING_TABLE
+    estimate: NDArray[np.void]
+    mission: NDArray[np.void]
+    reference: NDArray[np.void]
+    command: NDArray[np.void]
+    health: NDArray[np.void]
+    truth: NDArray[np.void]

@@ -11,30 +11,33 @@ import numpy as np
 from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
-from armland.records import MESSAGES, layout, tick_layout
+from armland.records import MessageTable
 
 CDR_LITTLE_ENDIAN = (0, 1, 0, 0)
 """The encapsulation header of a CDR payload; alignment counts from its end, so 8-byte fields need no padding."""
-
-CHANNELS = {name: number for number, name in enumerate(MESSAGES, start=1)}
-"""Channel (and schema) number of each message."""
 
 _PREFIX = 9  # opcode and length, which the length of a record does not count
 _FIXED = ("opcode", "length", "channel", "encapsulation")
 
 
 @lru_cache
-def block_layout(joints: int) -> np.dtype:
+def channels(table: MessageTable) -> dict[str, int]:
+    """Channel (and schema) number of each message."""
+    return {name: number for number, name in enumerate(table.messages, start=1)}
+
+
+@lru_cache
+def block_layout(table: MessageTable, joints: int) -> np.dtype:
     """The packed dtype of one tick's message records, by message name; the message itself is the field `payload`."""
     head = [("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4")]
     head += [("log_time", "<u8"), ("publish_time", "<u8")]
     tail = ("encapsulation", "u1", (len(CDR_LITTLE_ENDIAN),))
-    return np.dtype([(name, [*head, tail, ("payload", layout(name, joints))]) for name in MESSAGES])
+    return np.dtype([(name, [*head, tail, ("payload", table.layout(name, joints))]) for name in table.messages])
 
 
-def _blank(joints: int, size: int) -> NDArray[np.void]:
-    records = np.zeros(size, block_layout(joints))
-    for name, channel in CHANNELS.items():
+def _blank(table: MessageTable, joints: int, size: int) -> NDArray[np.void]:
+    records = np.zeros(size, block_layout(table, joints))
+    for name, channel in channels(table).items():
         record = records[name]
         record["opcode"] = Opcode.MESSAGE
         record["length"] = record.dtype.itemsize - _PREFIX
@@ -52,15 +55,16 @@ def _offset(dtype: np.dtype, name: str) -> int:
 class MessageBlock:
     """The message records of `size` ticks and their message indexes, allocated once and filled again and again."""
 
-    def __init__(self, joints: int, size: int) -> None:
+    def __init__(self, table: MessageTable, joints: int, size: int) -> None:
         self.size = size
-        self._records = _blank(joints, size)
+        self._names = tuple(table.messages)
+        self._records = _blank(table, joints, size)
         entries = ("entries", [("log_time", "<u8"), ("offset", "<u8")], (size,))
         index = [("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("entries_bytes", "<u4"), entries]
-        self._index = np.zeros(len(CHANNELS), index)
+        self._index = np.zeros(len(self._names), index)
         self._index["opcode"] = Opcode.MESSAGE_INDEX
         self._index["length"] = self._index.dtype.itemsize - _PREFIX
-        self._index["channel"] = list(CHANNELS.values())
+        self._index["channel"] = list(channels(table).values())
         self._index["entries_bytes"] = size * 16
         self.records = self._records.view(np.uint8).data
         """Bytes of all message records, tick by tick."""
@@ -69,15 +73,15 @@ class MessageBlock:
         self.index_stride = self._index.dtype.itemsize
         self._columns = self._records.view(np.uint8).reshape(size, -1)
         self._copies = []
-        for i, name in enumerate(CHANNELS):
-            start, length = _offset(self._records.dtype, name), layout(name, joints).itemsize
-            source = _offset(tick_layout(joints), name)
+        for i, name in enumerate(self._names):
+            start, length = _offset(self._records.dtype, name), table.layout(name, joints).itemsize
+            source = _offset(table.tick_layout(joints), name)
             target = start + _offset(self._records.dtype[name], "payload")
             self._copies.append((slice(target, target + length), slice(source, source + length)))
             self._index["entries"]["offset"][i] = start + np.arange(size) * self._records.dtype.itemsize
 
     def fill(self, ticks: NDArray[np.void], first: int, period_ns: int) -> NDArray[np.uint64]:
-        """Take over `size` ticks of `tick_layout`, the first of which is number `first` of the run.
+        """Take over `size` ticks of the table's `tick_layout`, the first of which is number `first` of the run.
 
         Returns:
             The times of the ticks in ns: the measurement's tick times `period_ns`.
@@ -87,7 +91,7 @@ class MessageBlock:
             self._columns[:, target] = rows[:, source]
         times = ticks["measurement"]["tick"].astype(np.uint64) * np.uint64(period_ns)
         sequence = np.arange(first, first + self.size)
-        for name in CHANNELS:
+        for name in self._names:
             record = self._records[name]
             record["sequence"] = sequence
             record["log_time"] = times
@@ -96,11 +100,11 @@ class MessageBlock:
         return times
 
 
-def read_block(data: bytes, joints: int) -> NDArray[np.void] | None:
+def read_block(data: bytes, table: MessageTable, joints: int) -> NDArray[np.void] | None:
     """The records, `block_layout`, in the content of a chunk, or None where another writer laid it out."""
-    dtype = block_layout(joints)
+    dtype = block_layout(table, joints)
     if len(data) % dtype.itemsize:
         return None
-    records, blank = np.frombuffer(data, dtype), _blank(joints, 1)
-    same = all((records[name][part] == blank[name][part]).all() for name in CHANNELS for part in _FIXED)
+    records, blank = np.frombuffer(data, dtype), _blank(table, joints, 1)
+    same = all((records[name][part] == blank[name][part]).all() for name in table.messages for part in _FIXED)
     return records if same else None

@@ -1,7 +1,8 @@
 """Reading a run log back: every message as one structured array, whole or as far as a killed run got.
 
 The recorder's own chunks are decoded in bulk. A log that another tool rewrote (`mcap compress`, `mcap recover`, ...)
-holds the same messages among other records; it is read message by message, which takes much longer.
+holds the same messages among other records; it is read message by message, which takes much longer. The file says which
+table its messages are of.
 """
 
 import struct
@@ -21,10 +22,14 @@ from numpy.typing import NDArray
 from zstandard import ZstdError
 
 from armland.errors import LogError
-from armland.records import MESSAGES, layout
-from armland.runtime.block import CDR_LITTLE_ENDIAN, CHANNELS, read_block
+from armland.mission.records import LANDING_TABLE
+from armland.records import PAPER_TABLE, MessageTable
+from armland.runtime.block import CDR_LITTLE_ENDIAN, channels, read_block
 from armland.runtime.mcap_file import METADATA_NAME
 from armland.runtime.schema import check_schema, topic
+
+TABLES = {table.kind: table for table in (PAPER_TABLE, LANDING_TABLE)}
+"""The tables whose logs can be read, by their kind."""
 
 
 @dataclass(frozen=True)
@@ -34,11 +39,26 @@ class Log:
     messages: dict[str, NDArray[np.void]]
     """Message name to structured array (ticks,), e.g. `log.messages["truth"]["r"]` (ticks, 3)."""
     metadata: dict[str, str]
-    """What the recorder was told about the run, and `version`, `joints`, `period_ns`."""
+    """What the recorder was told about the run, and `kind`, `version`, `joints`, `period_ns`."""
     attachments: dict[str, bytes]
     """Attached files by name."""
     complete: bool
     """False where the file ends before its footer: the process was killed while it recorded."""
+
+    @property
+    def kind(self) -> str:
+        """Kind of the run: `paper` or `landing`."""
+        return _kind(self.metadata)
+
+    def names(self, what: str) -> tuple[str, ...]:
+        """What a number in the messages stands for: `phases` for `mission.phase`, `faults` for `mission.fault`.
+
+        Raises:
+            LogError: the log has no such list.
+        """
+        if what not in self.metadata:
+            raise LogError(f"the log names no {what!r}; its metadata has {', '.join(sorted(self.metadata))}")
+        return tuple(self.metadata[what].split(","))
 
     @property
     def time(self) -> NDArray[np.float64]:
@@ -124,19 +144,36 @@ def _decode(content: _Content) -> Log:
         joints = int(content.metadata["joints"])
     except KeyError:
         raise LogError("it has no metadata of a run: not armland's, or cut off too early") from None
-    numbers = _channel_numbers(content, joints)
-    parts: dict[str, list[NDArray[np.void]]] = {name: [np.empty(0, layout(name, joints))] for name in MESSAGES}
+    table = _table(content.metadata)
+    numbers = _channel_numbers(content, table, joints)
+    layouts = {name: table.layout(name, joints) for name in table.messages}
+    parts: dict[str, list[NDArray[np.void]]] = {name: [np.empty(0, dtype)] for name, dtype in layouts.items()}
     for chunk in content.chunks:
         stream, length = get_chunk_data_stream(chunk, validate_crc=True)
-        records = read_block(stream.read(length), joints) if numbers == CHANNELS else None
+        records = read_block(stream.read(length), table, joints) if numbers == channels(table) else None
         if records is None:
             for name, payloads in _payloads(chunk, numbers).items():
-                parts[name].append(np.frombuffer(payloads, layout(name, joints)))
+                parts[name].append(np.frombuffer(payloads, layouts[name]))
         else:
-            for name in MESSAGES:
+            for name in layouts:
                 parts[name].append(records[name]["payload"])
     messages = {name: _join(arrays) for name, arrays in parts.items()}
     return Log(messages, content.metadata, content.attachments, content.complete)
+
+
+def _kind(metadata: dict[str, str]) -> str:
+    # Logs of before there were landings do not say.
+    return metadata.get("kind", PAPER_TABLE.kind)
+
+
+def _table(metadata: dict[str, str]) -> MessageTable:
+    kind = _kind(metadata)
+    if kind not in TABLES:
+        raise LogError(
+            f"it is the log of a run of kind {kind!r}; this version reads {', '.join(TABLES)}; read it with armland "
+            f"{metadata.get('version', 'of a later version')}"
+        )
+    return TABLES[kind]
 
 
 def _join(arrays: list[NDArray[np.void]]) -> NDArray[np.void]:
@@ -145,15 +182,15 @@ def _join(arrays: list[NDArray[np.void]]) -> NDArray[np.void]:
     return np.concatenate([array.view(np.dtype((np.void, dtype.itemsize))) for array in arrays]).view(dtype)
 
 
-def _channel_numbers(content: _Content, joints: int) -> dict[str, int]:
+def _channel_numbers(content: _Content, table: MessageTable, joints: int) -> dict[str, int]:
     """Channel number of each message, once its stored definition is known to be today's."""
     topics = {channel.topic: channel for channel in content.channels.values()}
     numbers = {}
-    for name in MESSAGES:
+    for name in table.messages:
         channel = topics.get(topic(name))
         if channel is None or channel.schema_id not in content.schemas:
             raise LogError(f"it has no messages on {topic(name)}; it has {sorted(topics)}")
-        check_schema(name, joints, content.schemas[channel.schema_id].data.decode())
+        check_schema(table, name, joints, content.schemas[channel.schema_id].data.decode())
         numbers[name] = channel.id
     return numbers
 

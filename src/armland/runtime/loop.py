@@ -1,25 +1,28 @@
 """The loop: read, update, command, record. Nothing else ties the parts together."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import TypeVar
 
-from armland.records import Tick
+from armland.records import AnyTick
 from armland.runtime.ports import Controller, Port
 from armland.runtime.recorder import Recorder
+
+T = TypeVar("T", bound=AnyTick)
 
 REPORT_EVERY = 500
 """Ticks between reports of progress."""
 
 
 def run_loop(
-    port: Port,
-    controller: Controller,
+    port: Port[T],
+    controller: Controller[T],
     recorder: Recorder,
-    tick: Tick,
-    ticks: int,
+    tick: T,
+    ticks: Iterable[int],
     progress: Callable[[int], None] | None = None,
 ) -> float:
-    """Run `ticks` ticks and return the wall-clock time they took, s.
+    """Run the loop once for each of `ticks` and return the wall-clock time they took, s.
 
     A tick is recorded after its command was given, so the record shows what was really asked. Whatever happens, the port is
     stopped; the recorder is the caller's to close.
@@ -29,14 +32,14 @@ def run_loop(
         controller: fills the messages.
         recorder: takes each tick.
         tick: the messages of the tick in progress.
-        ticks: how many.
+        ticks: their numbers, e.g. `range(1000)`; a generator that looks at `tick` decides from tick to tick whether it goes on.
         progress: called with the number of ticks done, now and then.
     """
     port.connect()
     read, update, command, append = port.read, controller.update, port.command, recorder.append
     begin = time.perf_counter()
     try:
-        for k in range(ticks):
+        for k in ticks:
             read(tick)
             update(tick)
             command(tick)

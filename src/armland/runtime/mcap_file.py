@@ -34,7 +34,8 @@ from numpy.typing import NDArray
 
 from armland import __version__
 from armland.errors import LogError
-from armland.runtime.block import CHANNELS, MessageBlock
+from armland.records import MessageTable
+from armland.runtime.block import MessageBlock, channels
 from armland.runtime.schema import MESSAGE_ENCODING, SCHEMA_ENCODING, schema_name, schema_text, topic
 
 METADATA_NAME = "armland"
@@ -44,7 +45,14 @@ METADATA_NAME = "armland"
 class McapFile:
     """One file being written. Every write ends on a whole record, so what is on disk can always be read."""
 
-    def __init__(self, path: str | Path, joints: int, metadata: Mapping[str, str], texts: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        path: str | Path,
+        table: MessageTable,
+        joints: int,
+        metadata: Mapping[str, str],
+        texts: Mapping[str, str],
+    ) -> None:
         """Open the file and write its head: metadata, the attached `texts` by name, schemas and channels.
 
         Raises:
@@ -57,12 +65,13 @@ class McapFile:
         self._chunks: list[ChunkIndex] = []
         self._attachments: list[AttachmentIndex] = []
         self._metadata: list[MetadataIndex] = []
+        self._numbers = channels(table)
         self._schemas = [
-            Schema(number, schema_text(name, joints).encode(), SCHEMA_ENCODING, schema_name(name))
-            for name, number in CHANNELS.items()
+            Schema(number, schema_text(table, name, joints).encode(), SCHEMA_ENCODING, schema_name(table, name))
+            for name, number in self._numbers.items()
         ]
         self._channels = [
-            Channel(number, topic(name), MESSAGE_ENCODING, {}, number) for name, number in CHANNELS.items()
+            Channel(number, topic(name), MESSAGE_ENCODING, {}, number) for name, number in self._numbers.items()
         ]
         try:
             self._file = open(self.path, "wb", buffering=0)  # noqa: SIM115 - closed by close()
@@ -96,7 +105,7 @@ class McapFile:
         head = struct.pack("<QQQIIQ", start, end, size, zlib.crc32(block.records), 0, size)  # 0: no compression
         chunk = struct.pack("<BQ", Opcode.CHUNK, len(head) + size) + head
         index = self._size + len(chunk) + size
-        offsets = {channel: index + i * block.index_stride for i, channel in enumerate(CHANNELS.values())}
+        offsets = {channel: index + i * block.index_stride for i, channel in enumerate(self._numbers.values())}
         chunk_index = ChunkIndex(len(chunk) + size, self._size, "", size, end, len(block.index), offsets, start, size)
         self._write(chunk, block.records, block.index)
         self._chunks.append(chunk_index)

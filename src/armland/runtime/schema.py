@@ -1,4 +1,4 @@
-"""The messages as ROS 2 message definitions: what a run log says about itself, made from the one field table.
+"""The messages as ROS 2 message definitions: what a run log says about itself, made from the table of their fields.
 
 A definition gives type, length and name of each field in the order of its bytes; a comment its meaning, unit and frame.
 """
@@ -10,7 +10,7 @@ from itertools import zip_longest
 import numpy as np
 
 from armland.errors import LogError
-from armland.records import MESSAGES, Field, layout
+from armland.records import Field, MessageTable
 
 SCHEMA_ENCODING = "ros2msg"
 MESSAGE_ENCODING = "cdr"
@@ -25,18 +25,18 @@ def topic(message: str) -> str:
     return f"/armland/{message}"
 
 
-def schema_name(message: str) -> str:
+def schema_name(table: MessageTable, message: str) -> str:
     """The ROS 2 type name of a message, e.g. `armland_msgs/msg/Measurement`."""
-    return f"armland_msgs/msg/{message.title().replace('_', '')}"
+    return f"armland_msgs/msg/{table.prefix}{message.title().replace('_', '')}"
 
 
-def schema_text(message: str, joints: int) -> str:
+def schema_text(table: MessageTable, message: str, joints: int) -> str:
     """The definition of a message for an arm with `joints` joints.
 
     Raises:
-        KeyError: unknown message; the known ones are the keys of `MESSAGES`.
+        KeyError: unknown message; the known ones are the keys of the table's `messages`.
     """
-    return "".join(_line(f, joints) for f in MESSAGES[message])
+    return "".join(_line(f, joints) for f in table.messages[message])
 
 
 def _line(field: Field, joints: int) -> str:
@@ -65,13 +65,13 @@ def schema_layout(text: str) -> np.dtype:
     return np.dtype(spec)
 
 
-def check_schema(message: str, joints: int, text: str) -> None:
+def check_schema(table: MessageTable, message: str, joints: int, text: str) -> None:
     """Accept a stored definition that describes the same bytes as today's table; comments may differ.
 
     Raises:
         LogError: another layout, with the first field that differs.
     """
-    stored, known = schema_layout(text), layout(message, joints)
+    stored, known = schema_layout(text), table.layout(message, joints)
     if stored == known:
         return
     for there, here in zip_longest(stored.descr, known.descr):

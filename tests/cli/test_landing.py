@@ -1,0 +1,266 @@
+"""`armland land` and `armland takeoff`: exit codes, one readable message, nothing half-written, logs that can be read."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+
+from armland.cli import main
+from armland.config import SCENARIOS
+from armland.errors import PlantError
+from armland.mission.landing_procedure import LANDING
+from armland.mission.supervisor import FAULTS
+from armland.plant.landing import LandingPlant
+from armland.runtime.log import read_log
+
+
+class Done(NamedTuple):
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def armland(tmp_path, monkeypatch, capsys):
+    """Run the command in this process, in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*args: str) -> Done:
+        monkeypatch.setattr(sys, "argv", ["armland", *args])
+        with pytest.raises(SystemExit) as end:
+            main()
+        return Done(int(end.value.code or 0), *capsys.readouterr())
+
+    return call
+
+
+def sets(*settings: str) -> tuple[str, ...]:
+    return tuple(word for setting in settings for word in ("--set", setting))
+
+
+SHORT = sets("duration_s=1.5")
+
+
+def files(folder: Path) -> list[str]:
+    return sorted(p.name for p in folder.iterdir())
+
+
+def test_landing_leaves_result_log_and_figures(armland, tmp_path):
+    done = armland("land", "--seed", "3", "--json", "--out", "out", *sets("imperfections.hover_noise_m=0.005"))
+    assert done.code == 0, done.err
+    result = json.loads(done.out)
+    assert result == json.loads((tmp_path / "out" / "result.json").read_text())
+    assert (result["success"], result["seed"]) == (True, 3)
+    names = ["landing.mcap", "landing_overview.pdf", "landing_overview.png", "result.json"]
+    assert files(tmp_path / "out") == names
+    told = [line.split()[2] for line in done.err.splitlines() if line.strip()[:1].isdigit()]
+    assert told == [p["name"] for p in result["phases"]]
+
+    log = read_log(tmp_path / "out" / "landing.mcap")
+    assert (log.kind, log.complete) == ("landing", True)
+    assert {k: log.metadata[k] for k in ("mission", "seed")} == {"mission": "landing", "seed": "3"}
+    assert json.loads(log.metadata["overrides"]) == {"imperfections": {"hover_noise_m": 0.005}}
+    assert log.attachments["scenario.toml"] == (SCENARIOS / "landing.toml").read_bytes()
+    assert log.names("phases") == tuple(p.name for p in LANDING)
+    assert log.names("faults") == FAULTS
+    # A reader who knows nothing but the log finds the phases that were flown.
+    phase = log.messages["mission"]["phase"]
+    changes = np.flatnonzero(np.diff(phase)) + 1
+    flown = [log.names("phases")[phase[k]] for k in (0, *changes)]
+    assert flown == [p["name"] for p in result["phases"]]
+    np.testing.assert_allclose(log.time[changes], [p["start_s"] for p in result["phases"][1:]], atol=1e-9)
+    force = np.linalg.norm(log.messages["truth"]["hinge_force"], axis=1).max()
+    assert force == pytest.approx(result["hinge_force_max_n"], rel=1e-12)
+
+
+def test_takeoff_s_log_decodes_with_the_library(armland, tmp_path):
+    done = armland("takeoff", "--no-figures", "--out", "out", *SHORT)
+    assert (done.code, files(tmp_path / "out")) == (1, ["result.json", "takeoff.mcap"]), done.err
+    log, decoded = read_log(tmp_path / "out" / "takeoff.mcap"), 0
+    with (tmp_path / "out" / "takeoff.mcap").open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for found in reader.iter_decoded_messages(topics=["/armland/mission", "/armland/truth"]):
+            message = log.messages[found.channel.topic.removeprefix("/armland/")][found.message.sequence]
+            assert found.message.log_time == 1_000_000 * message["tick"]
+            for field in message.dtype.names:
+                value = np.array(getattr(found.decoded_message, field), message.dtype[field].base)
+                assert value.tobytes() == message[field].tobytes()
+            decoded += 1
+    assert decoded == 2 * 1500
+
+
+def test_flight_that_fails_is_exit_code_1_and_says_why(armland):
+    done = armland("land", "--no-figures", "--no-log", "--out", "out", *SHORT)
+    assert done.code == 1
+    assert "failure: still in phase" in done.out
+    assert "Traceback" not in done.err
+
+
+def test_same_scenario_and_seed_leave_the_same_log(armland, tmp_path):
+    (tmp_path / "mine.toml").write_text('title = "two"\nseed = 2\nduration_s = 1.5\n')
+    (tmp_path / "other.toml").write_text('title = "two"\nseed = 2\nduration_s = 1.5\n')
+    for name, scenario, seed in (("a", "mine", ()), ("b", "other", ("--seed", "2")), ("c", "mine", ("--seed", "4"))):
+        done = armland("land", f"{scenario}.toml", *seed, "--no-figures", "--out", name)
+        assert done.code == 1, done.err
+    logs = [(tmp_path / name / "landing.mcap").read_bytes() for name in "abc"]
+    assert logs[0] == logs[1]
+    assert logs[0] != logs[2]
+
+
+@pytest.mark.parametrize("breaks", [KeyboardInterrupt, PlantError("no longer finite"), MemoryError])
+def test_flight_that_dies_leaves_its_log_and_no_result(armland, tmp_path, monkeypatch, breaks):
+    for name in ("result.json", "landing_overview.png", "landing_overview.pdf", "campaign.json", "notes.txt"):
+        (tmp_path / name).write_text("of an earlier run")
+    command = LandingPlant.command
+
+    def dies(plant, tick):
+        if tick.measurement["tick"][0] == 620:
+            raise breaks
+        command(plant, tick)
+
+    monkeypatch.setattr(LandingPlant, "command", dies)
+    if breaks is MemoryError:
+        with pytest.raises(MemoryError):
+            armland("land", "--out", ".")
+    else:
+        done = armland("land", "--out", ".")
+        assert done.code == (130 if breaks is KeyboardInterrupt else 2)
+        assert ("interrupted" if breaks is KeyboardInterrupt else "no longer finite") in done.err
+    assert files(tmp_path) == ["campaign.json", "landing.mcap", "notes.txt"]
+    log = read_log(tmp_path / "landing.mcap")
+    assert log.complete
+    assert log.messages["truth"]["tick"].tolist() == list(range(620))
+
+
+def test_killed_flight_leaves_whole_blocks(tmp_path):
+    code = """
+import os, sys
+from armland.experiments.landing import fly_landing
+from armland.mission.landing_scenario import landing_scenario
+def kill(phase, t):
+    if phase == "guide":
+        os._exit(9)
+fly_landing(landing_scenario(), 1, kill, sys.argv[1])
+"""
+    done = subprocess.run([sys.executable, "-c", code, tmp_path / "run.mcap"], check=False, timeout=120)
+    assert done.returncode == 9
+    log = read_log(tmp_path / "run.mcap")
+    flown = len(log.messages["mission"])
+    assert not log.complete
+    assert flown >= 500
+    assert flown % 250 == 0
+
+
+def test_campaign_writes_its_outcomes_and_no_log(armland, tmp_path):
+    done = armland("land", "--seeds", "2", "--seed", "5", "--jobs", "1", "--out", "out", "--json", *SHORT)
+    assert done.code == 1
+    assert [o["seed"] for o in json.loads(done.out)] == [5, 6]
+    assert files(tmp_path / "out") == ["campaign.json"]
+    assert "1 of 2 flown, 0 succeed" in done.err
+    assert "seed 6: still in phase" in done.err
+
+
+def test_fault_is_injected_from_the_command_line(armland, tmp_path):
+    fault = 'faults=[{kind="magnet_coil", phase="self_test", size=0.6}]'
+    done = armland("land", "--no-figures", "--out", "out", "--json", *sets(fault, "duration_s=4.0"))
+    assert (done.code, json.loads(done.out)["end"]) == (1, "refused")
+    assert json.loads(armland("land", "--no-figures", "--out", "out", "--json", *sets("duration_s=4.0")).out)[
+        "end"
+    ] != ("refused")
+
+
+HEAVY = ("extra_mass_kg=16.0", "demonstrator.rotors.max_thrust_n=100.0", "magnet_rating_n=2000.0")
+BAD = {
+    "catch out of reach": (sets("place.catch_m=[1.6, 0.0, 0.86]"), ["out of reach by", "place.catch_m = (1.6", "mm"]),
+    "put down out of reach": (sets("place.put_down_m=[1.2, 0.0, 0.7]"), ["out of reach by", "put_down_m = (1.2"]),
+    "put down beside the cradle": (
+        sets("place.put_down_m=[0.64, 0.0, 0.701]"),
+        ["put_down_m", "40 mm beside", "at most 20 mm"],
+    ),
+    "tracking out of reach": (
+        sets("place.catch_m=[0.62, 0.0, 0.9]"),
+        ["bounds.uav_error_m = 0.06 m", "out of reach by 7 mm"],
+    ),
+    "start inside the arm": (
+        sets("place.start_above_m=0.0", "place.start_offset_m=[0.1, 0.1, 0.3]"),
+        ["place.start_above_m = 0 ", "less than 0.05 m beside", "from 0.30 to"],
+    ),
+    "start out of sight": (sets("place.start_above_m=2.5"), ["2.5", "does not see its marker", "would do"]),
+    "start box too wide": (sets("place.start_offset_m=[0.9, 0.9, 0.1]"), ["start_offset_m", "would do"]),
+    "too heavy for the magnet": (sets("magnet_rating_n=5.0"), ["weighs 5.2 N", "loaded with 3.0 N", "at most 0.31 kg"]),
+    "too heavy for the rotors": (
+        sets("extra_mass_kg=0.5"),
+        ["weighs 10.08 N", "rotors give 7.44 N", "at most 0.683 kg"],
+    ),
+    "too heavy for both": (
+        sets("extra_mass_kg=0.5", "magnet_rating_n=5.0"),
+        ["rotors give 7.44 N", "loaded with 3.0 N"],
+    ),
+    "too heavy for the arm": (sets(*HEAVY), ["joint A2 would need 191 N·m", "0.9 of its limit is 158 N·m"]),
+    "two contradictions at once": (
+        sets("bounds.lost_offset_m=0.001", "bounds.pull_seen_n=2.0"),
+        ["2 problems", "lost_offset_m = 0.001", "pull_seen_n = 2"],
+    ),
+    "unknown scenario": (("nowhere.toml",), ["nowhere.toml", "does not exist", "landing"]),
+    "a scenario of the paper": (("paper",), ["paper.toml", "unknown key", "place"]),
+    "broken TOML": (("broken.toml",), ["broken.toml is not valid TOML", "line 2"]),
+    "unknown key": (("unknown.toml",), ["place.catch: unknown key", "catch_m"]),
+    "unknown key of the demonstrator": (sets("demonstrator.uav.mas_kg=1.0"), ["uav.mas_kg: unknown key", "mass_kg"]),
+    "wrong type": (sets('place.catch_m="here"'), ["place.catch_m", "array", "'here'"]),
+    "unknown fault": (sets('faults=[{kind="flood"}]'), ["faults.0.kind", "'link_loss'", "'flood'"]),
+    "fault in another mission's phase": (
+        sets('faults=[{kind="link_loss", phase="carry_up"}]'),
+        ["no phase ['carry_up']", "carry, set_down"],
+    ),
+    "setting without a value": (sets("place.catch_m"), ["'place.catch_m'", "KEY=VALUE"]),
+    "setting that is not TOML": (sets("title=calm"), ["'calm' is not a value of TOML", "quotes"]),
+    "no time": (sets("duration_s=0.001"), ["duration_s", "greater than or equal to 1"]),
+    "no seeds": (("--seeds", "0"), ["--seeds", "greater than or equal to 1"]),
+    "negative seed": (("--seed", "-1"), ["--seed", "greater than or equal to 0"]),
+    "out is a file": (("--out", "unknown.toml"), ["--out 'unknown.toml'", "folder"]),
+    "out is below a file": (("--out", "unknown.toml/sub"), ["--out 'unknown.toml/sub'", "folder"]),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input_is_one_message_exit_code_2_and_nothing_written(name, armland, tmp_path):
+    args, words = BAD[name]
+    (tmp_path / "broken.toml").write_text("seed = 1\n[[[\n")
+    (tmp_path / "unknown.toml").write_text("[place]\ncatch = [0.62, 0.0, 0.86]\n")
+    if "--out" in args:
+        (tmp_path / "unknown.toml").write_text("")
+    before = files(tmp_path)
+    done = armland("land", *args)
+    assert done.code == 2, done
+    # Typer puts its messages into boxes as wide as the terminal.
+    text = " ".join(done.err.replace("│", " ").split())
+    assert [word for word in words if word not in text] == [], text
+    assert done.out == ""
+    assert "Traceback" not in done.err
+    assert sum(line.startswith(("armland: ", "Usage: ")) for line in map(str.strip, done.err.splitlines())) == 1
+    assert files(tmp_path) == before
+
+
+def test_takeoff_refuses_a_phase_of_the_landing(armland, tmp_path):
+    done = armland("takeoff", *sets('faults=[{kind="link_loss", phase="set_down"}]'))
+    assert (done.code, files(tmp_path)) == (2, [])
+    assert "hand_back" in done.err
+
+
+@pytest.mark.parametrize(("command", "mission"), [("land", "landing"), ("takeoff", "take-off")])
+def test_help_has_examples_and_says_how_faults_are_injected(armland, command, mission):
+    text = " ".join(armland(command, "--help").out.replace("│", " ").split())
+    for word in ("Examples", f"armland {command} --seeds 200", mission, "[[faults]]", "--log", "--set", "Exit code: 0"):
+        assert word in text
+
+
+def test_schemas_of_both_kinds(armland):
+    assert "place" in json.loads(armland("schema", "landing").out)["properties"]
+    assert armland("schema").out == armland("schema", "paper").out
+    assert armland("schema", "boat").code == 2

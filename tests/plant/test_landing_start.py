@@ -1,0 +1,84 @@
+"""What the plant refuses before anything moves, each beside what it accepts; the contacts are those of the simulation itself."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from armland.errors import ConfigurationError
+from armland.mission.landing_scenario import landing_scenario
+from armland.mission.landing_setup import set_up
+from armland.mission.records import LandingTick
+from armland.plant.landing import LandingPlant
+from armland.plant.landing_start import CRADLE_M, check_cradle, check_start
+
+HOME = set_up(landing_scenario()).home
+
+
+def plant_of(**place):
+    return LandingPlant(landing_scenario("landing", {"place": place}), HOME)
+
+
+def refused(**place):
+    plant = plant_of(**place)
+    with pytest.raises(ConfigurationError) as refusal:
+        check_start(plant.scenario, plant.scene, HOME)
+    return str(refusal.value)
+
+
+def accepted(**place):
+    plant = plant_of(**place)
+    check_start(plant.scenario, plant.scene, HOME)
+
+
+def test_shipped_scenario_is_accepted():
+    accepted()
+
+
+def test_hint_holds_and_its_ends_are_the_last_that_do():
+    text = refused(start_above_m=0.0)
+    low, _, high = text.partition("start_above_m from ")[2].removesuffix(" would do").partition(" to ")
+    for height in (low, high):
+        accepted(start_above_m=float(height))
+    for height in (float(low) - 0.011, float(high) + 0.011):
+        assert "would do" in refused(start_above_m=height)
+
+
+def test_start_that_is_refused_touches_the_arm_when_it_is_simulated():
+    place = {"start_above_m": 0.0, "start_offset_m": [0.0, 0.0, 0.3]}
+    assert "beside tool" in refused(**place) or "beside link" in refused(**place)
+    plant = plant_of(start_above_m=0.0, start_offset_m=[0.0, 0.0, 0.0])
+    plant.connect()
+    s, d = plant.scene, plant.data
+    for below, touches in ((0.0, False), (0.3, True)):
+        d.qpos[s.uav_qpos[:3]] = np.array(plant.scenario.landing.place.catch_m) + [0.0, 0.0, 0.06 - below]
+        d.qpos[s.uav_qpos[3:]] = [1.0, 0.0, 0.0, 0.0]
+        mujoco.mj_forward(s.model, d)
+        force = d.sensordata[s.sensor["arm_uav_force"] :][:3]
+        assert (np.linalg.norm(force) > 0.0) == touches
+
+
+def test_marker_that_is_refused_as_unseen_is_not_found_by_the_camera():
+    assert "does not see its marker" in refused(start_above_m=2.0)
+    assert "does not see its marker" in refused(start_offset_m=[0.45, 0.0, 0.1])
+    for above, seen in ((2.0, False), (0.2, True)):
+        plant = plant_of(start_above_m=above, start_offset_m=[0.0, 0.0, 0.0], start_speed_mps=0.0)
+        tick, fresh = LandingTick(7), 0
+        plant.connect()
+        for _ in range(300):
+            plant.read(tick)
+            fresh += int(tick.measurement["camera_fresh"][0])
+            tick.command["tau"] = plant.data.qfrc_bias[plant.scene.joint_dof]
+            plant.command(tick)
+        assert (fresh > 0) == seen
+
+
+def test_cradle_must_stand_where_the_mission_puts_the_uav_down():
+    plant = plant_of()
+    there = plant.scene.put_down
+    for step, good in ((0.9 * CRADLE_M, True), (1.1 * CRADLE_M, False)):
+        scenario = landing_scenario("landing", {"place": {"put_down_m": [float(there[0]), step, float(there[2])]}})
+        if good:
+            check_cradle(scenario, plant.scene)
+            continue
+        with pytest.raises(ConfigurationError, match=r"22 mm beside the pivot .* at most 20 mm"):
+            check_cradle(scenario, plant.scene)
