@@ -8,8 +8,9 @@ from armland.errors import ConfigurationError
 from armland.mission.landing_scenario import landing_scenario
 from armland.mission.landing_setup import set_up
 from armland.mission.records import LandingTick
-from armland.plant.landing import LandingPlant
-from armland.plant.landing_start import CRADLE_M, check_cradle, check_start
+from armland.plant.landing import LandingPlant, landing_gear
+from armland.plant.landing_scene import build_landing_scene
+from armland.plant.landing_start import check_start
 
 HOME = set_up(landing_scenario()).home
 
@@ -72,13 +73,13 @@ def test_marker_that_is_refused_as_unseen_is_not_found_by_the_camera():
         assert (fresh > 0) == seen
 
 
-def test_cradle_must_stand_where_the_mission_puts_the_uav_down():
-    plant = plant_of()
-    there = plant.scene.put_down
-    for step, good in ((0.9 * CRADLE_M, True), (1.1 * CRADLE_M, False)):
-        scenario = landing_scenario("landing", {"place": {"put_down_m": [float(there[0]), step, float(there[2])]}})
-        if good:
-            check_cradle(scenario, plant.scene)
-            continue
-        with pytest.raises(ConfigurationError, match=r"22 mm beside the pivot .* at most 20 mm"):
-            check_cradle(scenario, plant.scene)
+def test_cradle_stands_where_the_mission_puts_the_uav_down():
+    for down in ([0.66, 0.03, 0.72], [0.7, 0.0, 0.65]):
+        scenario = landing_scenario("landing", {"place": {"put_down_m": down}})
+        np.testing.assert_allclose(build_landing_scene(scenario.demonstrator, landing_gear(scenario)).put_down, down)
+
+
+def test_cradle_on_the_floor_is_refused():
+    scenario = landing_scenario("landing", {"place": {"put_down_m": [0.68, 0.0, 0.1]}})
+    with pytest.raises(ConfigurationError, match=r"0\.059 m above the floor; they must lie at least 0\.1 m"):
+        landing_gear(scenario)

@@ -23,7 +23,9 @@ _EPILOG = """**Examples**
 `armland COMMAND --set 'faults=[{kind="link_loss", phase="PHASE", after_s=0.5}]'` lets a device fail, as `[[faults]]` with the
 same keys does in a scenario's file.
 
-`armland COMMAND --seeds 200` flies 200 seeds over all cores and writes campaign.json instead.
+`armland COMMAND --arm my_arm.urdf --ee tool0` puts your own arm in the LWR's place.
+
+`armland COMMAND --seeds 200` flies 200 seeds over all cores: spread of each figure beside its bound, campaign.json, one page.
 
 Exit code: 0 if it succeeds (of a campaign: every seed), 1 if not (says why), 2 for bad input.
 """
@@ -46,10 +48,16 @@ Settings = Annotated[
         "--set", metavar="KEY=VALUE", help="Replace a value of the scenario: dotted key, value as in TOML. Repeatable."
     ),
 ]
+Arm = Annotated[
+    Path | None, typer.Option(help="Another serial arm: URDF or MJCF file. Its pose at the start is searched for.")
+]
+EndEffector = Annotated[
+    str | None, typer.Option("--ee", help="Link, body or site of the arm that carries the tool, z outwards.")
+]
 Out = Annotated[Path, typer.Option(help="Folder for figures, log and result.json.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print result.json alone on standard output.")]
 Log = Annotated[bool, typer.Option("--log/--no-log", help="Write the run log (MCAP) of a single flight.")]
-Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures of a single flight.")]
+Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")]
 
 
 def land(
@@ -58,13 +66,15 @@ def land(
     seeds: Seeds = 1,
     jobs: Jobs = None,
     settings: Settings = None,
+    arm: Arm = None,
+    ee: EndEffector = None,
     out: Out = Path("out/land"),
     as_json: AsJson = False,
     log: Log = True,
     figures: Figures = True,
 ) -> None:
     """Land a UAV: approach, capture, hand-over, set-down and release, with live progress by phase."""
-    _command("landing", scenario, seed, seeds, jobs, settings, out, as_json, log, figures)
+    _command("landing", scenario, seed, seeds, jobs, _with_arm(settings, arm, ee), out, as_json, log, figures)
 
 
 def takeoff(
@@ -73,13 +83,15 @@ def takeoff(
     seeds: Seeds = 1,
     jobs: Jobs = None,
     settings: Settings = None,
+    arm: Arm = None,
+    ee: EndEffector = None,
     out: Out = Path("out/takeoff"),
     as_json: AsJson = False,
     log: Log = True,
     figures: Figures = True,
 ) -> None:
     """Take off from the cradle: lift, spin up, carry upwards, release, fly off; with live progress by phase."""
-    _command("takeoff", scenario, seed, seeds, jobs, settings, out, as_json, log, figures)
+    _command("takeoff", scenario, seed, seeds, jobs, _with_arm(settings, arm, ee), out, as_json, log, figures)
 
 
 def _command(
@@ -88,16 +100,15 @@ def _command(
     seed: int | None,
     seeds: int,
     jobs: int | None,
-    settings: list[str] | None,
+    settings: dict[str, Any],
     out: Path,
     as_json: bool,
     log: bool,
     figures: bool,
 ) -> None:
-    from armland.cli.settings import parse_settings
     from armland.mission.landing_scenario import landing_scenario
 
-    loaded = landing_scenario(scenario, parse_settings(settings or []))
+    loaded = landing_scenario(scenario, settings)
     console = Console(stderr=True)
     announce_compilation(console, "mission", "landing.landing_tick")
     from armland.experiments.landing import prepare
@@ -105,11 +116,25 @@ def _command(
     flight = prepare(loaded, mission, seed)
     make_writable(out)
     success = (
-        _campaign(flight.setup, seeds, jobs, out, as_json, console)
+        _campaign(flight.setup, seeds, jobs, out, as_json, figures, console)
         if seeds > 1
         else _fly(flight, out, as_json, log, figures, console)
     )
     raise typer.Exit(0 if success else 1)
+
+
+def _with_arm(settings: list[str] | None, arm: Path | None, ee: str | None) -> dict[str, Any]:
+    from armland.cli.settings import parse_settings
+    from armland.config import update
+
+    overrides: dict[str, Any] = {}
+    if arm is not None:
+        part = {"file": str(arm.resolve()), "ee": ee or "flange", "elbow_joint": None, "home_rad": None}
+        overrides = {"demonstrator": {"arm": part}, "place": {"home_deg": None}}
+    elif ee is not None:
+        overrides = {"demonstrator": {"arm": {"ee": ee}}}
+    update(overrides, parse_settings(settings or []))
+    return overrides
 
 
 def _fly(flight: Any, out: Path, as_json: bool, log: bool, figures: bool, console: Console) -> bool:
@@ -136,23 +161,31 @@ def _fly(flight: Any, out: Path, as_json: bool, log: bool, figures: bool, consol
     return outcome.success
 
 
-def _campaign(setup: Any, seeds: int, jobs: int | None, out: Path, as_json: bool, console: Console) -> bool:
+def _campaign(
+    setup: Any, seeds: int, jobs: int | None, out: Path, as_json: bool, figures: bool, console: Console
+) -> bool:
+    from armland.experiments.campaign_summary import summarise
     from armland.experiments.landing import campaign
+    from armland.view.campaign_report import draw_campaign, print_campaign
 
-    file, first = out / "campaign.json", setup.scenario.landing.seed
+    file, first, mission = out / "campaign.json", setup.scenario.landing.seed, setup.mission
     _remove(file)
-    with flights_told(console, setup.mission, seeds) as tell:
-        outcomes = campaign(
-            setup.scenario, range(first, first + seeds), setup.mission, jobs, done=lambda o: tell(o.success)
-        )
-    text = json.dumps([o.result() for o in outcomes], indent=2)
+    with flights_told(console, mission, seeds) as tell:
+        outcomes = campaign(setup.scenario, range(first, first + seeds), mission, jobs, done=lambda o: tell(o.success))
+    hinge_bound = float(setup.parameters["hinge_max"][0])
+    summary = summarise(outcomes, hinge_bound)
+    text = json.dumps({"summary": summary.result(), "flights": [o.result() for o in outcomes]}, indent=2)
     file.write_text(text + "\n", encoding="utf-8")
-    good = sum(o.success for o in outcomes)
-    print(text if as_json else f"{good} of {seeds} succeed; each outcome is in {file}")
-    for o in outcomes:
-        if not o.success:
-            console.print(f"seed {o.seed}: {o.reason}", highlight=False)
-    return good == seeds
+    if figures:
+        draw_campaign(out, outcomes, hinge_bound, mission)
+    if as_json:
+        print(text)
+    else:
+        print_campaign(summary, mission, out)
+        for o in outcomes:
+            if not o.success:
+                print(f"seed {o.seed}: {o.reason}")
+    return summary.successes == seeds
 
 
 def _remove(*files: Path) -> None:

@@ -18,7 +18,7 @@ from armland.mission.landing_setup import Setup, set_up
 from armland.mission.records import LandingTick
 from armland.mission.supervisor import FAULTS
 from armland.plant.landing import LandingPlant
-from armland.plant.landing_start import check_cradle, check_start
+from armland.plant.landing_start import check_start
 from armland.runtime.loop import run_loop
 from armland.runtime.recorder import Recorder
 
@@ -82,7 +82,6 @@ def prepare(scenario: LandingScenario, mission: Mission = "landing", seed: int |
         scenario = scenario._replace(landing=scenario.landing.model_copy(update={"seed": seed}))
     setup = set_up(scenario, mission)
     plant = LandingPlant(scenario, setup.home, "air" if mission == "landing" else "cradle")
-    check_cradle(scenario, plant.scene)
     if mission == "landing":
         check_start(scenario, plant.scene, setup.home)
     return Flight(setup, plant)

@@ -32,6 +32,9 @@ UAV_WATCHDOG_S = 0.3
 BRAKE_NM = 300.0
 """Friction of a joint whose brake is on. Assumption: enough for any pose with its load."""
 
+LOWEST_CRADLE_M = 0.1
+"""Least height of the cradle's rails above the floor: its legs stand on it."""
+
 CLIMB_M = 0.4
 """How far a flying UAV without link climbs away."""
 
@@ -200,10 +203,19 @@ class LandingPlant:
 
 
 def landing_gear(scenario: LandingScenario) -> LandingGear:
-    """Gear of a scenario: its magnet, and the cradle where the UAV shall be put down."""
+    """Gear of a scenario: its magnet, and the cradle where the UAV shall be put down.
+
+    Raises:
+        ConfigurationError: the rails would lie on the floor.
+    """
     gear, down = LandingGear(), np.array(scenario.landing.place.put_down_m)
     # The skids' lower edge lies on the rails.
     down[2] += gear.skids.z - gear.skids.radius - scenario.demonstrator.uav.lever_m[2]
+    if down[2] < LOWEST_CRADLE_M:
+        raise ConfigurationError(
+            f"place.put_down_m = {scenario.landing.place.put_down_m} puts the cradle's rails {down[2]:.3f} m above the floor; "
+            f"they must lie at least {LOWEST_CRADLE_M:g} m above it"
+        )
     x, y, z = (round(float(c), 9) for c in down)
     magnet = Magnet(rated_force=scenario.landing.magnet_rating_n)
     return gear._replace(magnet=magnet, cradle=Cradle(position=(x, y, z)))

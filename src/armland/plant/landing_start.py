@@ -1,7 +1,6 @@
 """What the plant says of a scenario's places before anything moves.
 
-In the box of starts the UAV must touch nothing, and the waiting arm's camera must see its marker; the cradle must stand where
-the mission puts the UAV down.
+In the box of starts the UAV must touch nothing, and the waiting arm's camera must see its marker.
 """
 
 from collections.abc import Iterator
@@ -20,30 +19,11 @@ from armland.rotations import Array, from_rotation_vector, matrix
 CLEARANCE_M = 0.05
 """Distance that the UAV keeps at its start: a UAV that hovers by itself wanders."""
 
-CRADLE_M = 0.02
-"""Largest distance between the cradle and where the mission believes it."""
-
 HEIGHTS_M = np.arange(0.0, 2.0, 0.01)
 """Heights above the catch that are tried to say what would have worked."""
 
 MARKER_DOWN = np.diag([1.0, -1.0, -1.0])
 """body<-marker: the printed face looks down."""
-
-
-def check_cradle(scenario: LandingScenario, scene: LandingScene) -> None:
-    """Refuse a place for putting down that the cradle does not have.
-
-    Raises:
-        ConfigurationError: with the distance.
-    """
-    wanted = scenario.landing.place.put_down_m
-    apart = float(np.linalg.norm(np.array(wanted) - scene.put_down))
-    if apart > CRADLE_M:
-        there = ", ".join(f"{x:.3f}" for x in scene.put_down)
-        raise ConfigurationError(
-            f"place.put_down_m = {wanted} is {1e3 * apart:.0f} mm beside the pivot of a UAV on the cradle, ({there}) m; "
-            f"at most {1e3 * CRADLE_M:.0f} mm are allowed: the scenario does not move the cradle"
-        )
 
 
 def check_start(scenario: LandingScenario, scene: LandingScene, home: Array) -> None:
