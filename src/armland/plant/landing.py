@@ -11,11 +11,13 @@ from armland.mission.landing_scenario import LandingScenario
 from armland.mission.records import LandingTick, UavMode
 from armland.mission.takeoff_procedure import TAKEOFF
 from armland.models.uav import mixer
-from armland.plant.camera import NOISE_WIDTH, SAMPLE, Camera, camera_parameters, observe
+from armland.plant.camera import NOISE_WIDTH, SAMPLE, camera_parameters, observe
 from armland.plant.camera import STATE as CAMERA_STATE
+from armland.plant.landing_camera import landing_camera, see_all
 from armland.plant.landing_devices import ADDRESSES, PARAMETERS, SENSORS, STATE, actuate, sense
 from armland.plant.landing_faults import FaultSchedule
 from armland.plant.landing_onboard import RING
+from armland.plant.landing_pictures import Photographer, Pictures
 from armland.plant.landing_scene import PLATE, LandingGear, LandingScene, build_landing_scene
 from armland.plant.magnet import Magnet, device, energise
 from armland.plant.noise import BLOCK, WhiteNoise, stream
@@ -73,11 +75,18 @@ class LandingPlant:
         scenario: what to simulate.
         home: joint positions at the start (n,), rad.
         start: `air` puts the UAV above the catch, `cradle` on the rails with its rotors stopped.
+        photographer: looks at real pictures in place of the camera's measurement model.
     """
 
-    def __init__(self, scenario: LandingScenario, home: Array, start: Literal["air", "cradle"] = "air") -> None:
+    def __init__(
+        self,
+        scenario: LandingScenario,
+        home: Array,
+        start: Literal["air", "cradle"] = "air",
+        photographer: Photographer | None = None,
+    ) -> None:
         self.scenario = scenario
-        gear = LandingGear(magnet=Magnet(rated_force=scenario.landing.magnet_rating_n))
+        gear = LandingGear(magnet=Magnet(rated_force=scenario.landing.magnet_rating_n), eye=scenario.landing.eye)
         self.scene: LandingScene = build_landing_scene(scenario.demonstrator, gear)
         _load(self.scene, scenario.landing.extra_mass_kg)
         self.data = mujoco.MjData(self.scene.model)
@@ -90,9 +99,10 @@ class LandingPlant:
         self._parameters = _parameters(scenario, self.scene, self._draw)
         self._state, self._camera_s, self._sample = np.zeros(1, STATE), np.zeros(1, CAMERA_STATE), np.zeros(1, SAMPLE)
         eye = scenario.landing.eye
-        exact = {} if scenario.landing.imperfections.camera else {"delay_ms": (0.0, 0.0), "honesty": 0.01, "lose": 0.0}
-        camera = Camera(rate_hz=eye.rate_hz, marker_size_m=eye.marker_size_m, **exact)  # type: ignore[arg-type]
-        self._camera_p = camera_parameters(camera, scenario.demonstrator.run.rate_hz)
+        self._camera_p = camera_parameters(landing_camera(scenario.landing), scenario.demonstrator.run.rate_hz)
+        self._pictures = Pictures(photographer) if photographer is not None else None
+        if self._pictures is not None:
+            see_all(self._camera_p)
         self._eye = np.array(eye.camera_m), np.array(eye.marker_m)
         self._addresses = np.zeros(1, ADDRESSES)
         first = self.scene.model.joint(int(self.scene.model.dof_jntid[self.scene.joint_dof[0]])).name
@@ -174,6 +184,10 @@ class LandingPlant:
             sample,
         )
         fresh = int(sample["fresh"][0]) and not self.faults.camera_lost
+        if self._pictures is not None:
+            if due < self.scenario.landing.eye.rate_hz:
+                self._pictures.expose(self._tick, self.data.qpos, self.data.qvel, self.faults.camera_frozen)
+            fresh = fresh and self._pictures.deliver(sample)
         m["camera_fresh"] = fresh
         if fresh:
             m["camera_capture"], m["camera_position"] = sample["capture"], sample["position"]
