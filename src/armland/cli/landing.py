@@ -1,4 +1,4 @@
-"""The commands of a landing: `land`, `takeoff`, `detector`."""
+"""The commands of a landing: `land`, `takeoff`."""
 
 import json
 from pathlib import Path
@@ -94,27 +94,3 @@ def _fly(mission: Any, scenario: str, seed: int | None, seeds: int, out: Path, a
 
         print_landing(outcome, out)
     raise typer.Exit(0 if outcome.success else 1)
-
-
-def detector(
-    per_distance: Annotated[int, typer.Option(min=1, help="Images at each distance.")] = 16,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of poses and image noise.")] = 0,
-    out: Annotated[Path, typer.Option(help="Folder for figure, demo image and table.")] = Path("out/detector"),
-    as_json: Annotated[bool, typer.Option("--json", help="Print the table as plain data.")] = False,
-) -> None:
-    """Detect a fiducial marker on rendered images: pose error against distance, beside the camera's measurement model."""
-    import math
-
-    from armland.view.marker_figures import draw_marker_demo, draw_marker_figure, table
-    from armland.view.marker_study import DISTANCES_M, marker_study
-
-    make_writable(out)
-    with Console(stderr=True).status("Rendering and detecting"):
-        study = marker_study(DISTANCES_M, per_distance, seed)
-        draw_marker_figure(out, study)
-        draw_marker_demo(out)
-    rows = [
-        {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in r._asdict().items()} for r in study.rows
-    ]
-    (out / "detector.json").write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
-    print(json.dumps(rows, indent=2) if as_json else table(study.rows))

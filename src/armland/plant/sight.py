@@ -1,4 +1,4 @@
-"""What share of the marker's face the camera at the end effector sees, by rays through the scene: no OpenGL is needed.
+"""Where the marker is for the camera at the end effector, and what share of it is seen, by rays: no OpenGL is needed.
 
 A grid of points on the face, white margin included; a point is seen where it lies in the picture and the straight line from
 the optical centre to it meets nothing else that is drawn.
@@ -47,6 +47,16 @@ def sight(model: mujoco.MjModel, data: mujoco.MjData, camera: Camera | None = No
     names = {_name(model, g) for g, c, i in zip(hit, clear, inside, strict=True) if i and not c}
     depth = float((face.xpos + size[2] * F[:, 2] - eye.xpos) @ R[:, 2])
     return Sight(float(np.mean(inside & clear)), float(np.mean(inside)), depth, tuple(sorted(names)))
+
+
+def marker_pose(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Array, Array]:
+    """Pose of the marker in the camera's frame: position (3,) m and quat (4,), camera<-marker; needs the state's kinematics."""
+    view, plate = data.cam(CAMERA), data.geom(MARKER)
+    R_wc, R_wm = view.xmat.reshape(3, 3) @ np.diag([1.0, -1.0, -1.0]), plate.xmat.reshape(3, 3)
+    face = plate.xpos + model.geom(MARKER).size[2] * R_wm[:, 2]
+    quat = np.zeros(4)
+    mujoco.mju_mat2Quat(quat, (R_wc.T @ R_wm).ravel())
+    return R_wc.T @ (face - view.xpos), quat
 
 
 def _first(model: mujoco.MjModel, data: mujoco.MjData, start: Array, ray: Array) -> int:

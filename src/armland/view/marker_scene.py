@@ -124,13 +124,3 @@ def print_marker(spec: mujoco.MjSpec) -> None:
     material = spec.add_material(name="marker", specular=0.0)
     material.textures[int(mujoco.mjtTextureRole.mjTEXROLE_RGB)] = "marker"
     spec.geom(MARKER).material = "marker"
-
-
-def marker_pose(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Array, Array]:
-    """Pose of the marker in the camera's frame: position (3,) m and quat (4,), camera<-marker; needs the state's kinematics."""
-    view, plate = data.cam(EYE), data.geom(MARKER)
-    R_wc, R_wm = view.xmat.reshape(3, 3) @ np.diag([1.0, -1.0, -1.0]), plate.xmat.reshape(3, 3)
-    face = plate.xpos + model.geom(MARKER).size[2] * R_wm[:, 2]
-    quat = np.zeros(4)
-    mujoco.mju_mat2Quat(quat, (R_wc.T @ R_wm).ravel())
-    return R_wc.T @ (face - view.xpos), quat

@@ -59,6 +59,7 @@ class Study(NamedTuple):
     ideal: NDArray[np.void]
     honest: NDArray[np.void]
     grain: NDArray[np.void]  # the honest pictures with intrinsics free of error
+    motions: list[Motion]
     camera: Camera
     per_distance: int
 
@@ -81,7 +82,8 @@ def marker_study(
     camera = Camera(marker_size_m=scene.size_m)
     places, grain = stream(seed, "marker poses"), stream(seed, "marker images")
     motions = [draw_motion(z, camera, places) for z in distances for _ in range(per_distance)]
-    study = Study(*(np.zeros(len(motions), ERROR) for _ in range(3)), camera, per_distance)
+    ideal, honest, known = (np.zeros(len(motions), ERROR) for _ in range(3))
+    study = Study(ideal, honest, known, motions, camera, per_distance)
     qpos = np.array([scene.qpos(m.position, m.quat) for m in motions])
     pictures = frames(scene.model, qpos, scene.width, scene.height, EYE)
     for i, (motion, picture) in enumerate(zip(motions, pictures, strict=True)):

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from armland.estimation.fiducial import Detection, detect, relocated
 from armland.plant.landing_pictures import Photo
 from armland.plant.noise import stream
+from armland.plant.sight import marker_pose
 from armland.rotations import Array, matrix, rotation_error
 from armland.view.frames import FrameStream
 from armland.view.marker_imaging import Calibration, Imaging, Motion, draw_unit, photographed
-from armland.view.marker_scene import EYE, MarkerScene, marker_pose
+from armland.view.marker_scene import EYE, MarkerScene
 
 
 class Shot(NamedTuple):
