@@ -20,6 +20,7 @@ from armland.plant.camera import (
     observe,
     visible,
 )
+from armland.plant.detector_errors import DETECTOR, PowerLaw, loss
 from armland.plant.noise import stream
 
 LEVEL, ORIGIN = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
@@ -149,28 +150,29 @@ def test_pose_is_that_of_the_marker_in_the_camera_frame():
 
 
 @pytest.mark.parametrize(
-    ("offset", "tilt_deg", "expected"),
+    ("offset", "tilt_deg", "expected", "incidence_deg"),
     [
-        ((0.0, 0.0, 0.5), 0.0, True),
-        ((0.0, 0.0, -0.5), 0.0, False),  # behind
-        ((0.0, 0.0, 0.04), 0.0, False),  # too near
-        ((0.0, 0.0, 2.3), 0.0, False),  # too far
-        ((0.24, 0.0, 0.5), 0.0, True),  # the edge of the view lies at 0.289 m, the marker's at 0.28 m
-        ((0.26, 0.0, 0.5), 0.0, False),  # a corner is out of view
-        ((0.0, 0.19, 0.5), 0.0, False),  # the image is lower than wide
-        ((0.19, 0.0, 0.5), 0.0, True),
-        ((0.0, 0.0, 0.5), 55.0, True),
-        ((0.0, 0.0, 0.5), 65.0, False),  # at too flat an angle
-        ((0.0, 0.0, 0.5), 180.0, False),  # from behind
+        ((0.0, 0.0, 0.5), 0.0, True, 25.0),
+        ((0.0, 0.0, -0.5), 0.0, False, 25.0),  # behind
+        ((0.0, 0.0, 0.04), 0.0, False, 25.0),  # too near
+        ((0.0, 0.0, 2.3), 0.0, False, 25.0),  # too far
+        ((0.24, 0.0, 0.5), 0.0, True, 60.0),  # the edge of the view lies at 0.289 m, the marker's at 0.28 m
+        ((0.26, 0.0, 0.5), 0.0, False, 60.0),  # a corner is out of view
+        ((0.0, 0.19, 0.5), 0.0, False, 60.0),  # the image is lower than wide
+        ((0.19, 0.0, 0.5), 0.0, True, 60.0),
+        ((0.0, 0.0, 0.5), 24.0, True, 25.0),
+        ((0.0, 0.0, 0.5), 26.0, False, 25.0),  # at too flat an angle
+        ((0.0, 0.0, 0.5), 180.0, False, 25.0),  # from behind
     ],
 )
-def test_what_is_in_view(offset, tilt_deg, expected):
+def test_what_is_in_view(offset, tilt_deg, expected, incidence_deg):
+    camera = STEADY._replace(incidence_max_deg=incidence_deg)
     R = (Rotation.from_quat(FACING, scalar_first=True) * Rotation.from_euler("x", tilt_deg, degrees=True)).as_matrix()
-    p = camera_parameters(STEADY, 1000)
+    p = camera_parameters(camera, 1000)
     assert p.dtype == PARAMETERS
     assert visible(np.array(offset), np.ascontiguousarray(R), p[0]) == expected
     assert (
-        len(watch(300, offset=offset, quat=Rotation.from_matrix(R).as_quat(scalar_first=True)).arrival) > 0
+        len(watch(300, camera, offset=offset, quat=Rotation.from_matrix(R).as_quat(scalar_first=True)).arrival) > 0
     ) == expected
 
 
@@ -203,6 +205,63 @@ def test_claimed_noise_may_be_a_lie():
     honest, liar = (watch(20_000, camera=STEADY._replace(honesty=h)) for h in (1.0, 3.0))
     np.testing.assert_array_equal(liar.sigma, honest.sigma)
     np.testing.assert_allclose(liar.position.std(axis=0), 3.0 * honest.position.std(axis=0), rtol=1e-9)
+
+
+def test_larger_of_published_and_detectors_errors_holds():
+    """Negative control: with a detector that is worse than published, its own law is what comes out, at any size of marker."""
+    bad = DETECTOR._replace(depth=PowerLaw(0.1, 2.0), yaw=PowerLaw(0.2, 1.0))
+    plain, worse = (
+        watch(200, camera=STEADY._replace(detector=d, marker_size_m=0.06)).sigma[0] for d in (DETECTOR, bad)
+    )
+    changed = [0.1 * 0.5**2, 0.2 * 0.5]
+    np.testing.assert_allclose(worse[[2, 5]], changed)
+    np.testing.assert_array_equal(worse[[0, 1, 3, 4]], plain[[0, 1, 3, 4]])
+    # Twice the marker at twice the distance makes the same picture.
+    double = watch(200, offset=(0, 0, 1.0), camera=STEADY._replace(detector=bad, marker_size_m=0.12)).sigma[0]
+    np.testing.assert_allclose(double[[2, 5]], np.multiply(changed, [2.0, 1.0]))
+
+
+def test_published_errors_are_the_larger_ones_over_the_published_range():
+    for z in np.geomspace(0.13, 1.6, 12):
+        sigma = watch(200, offset=(0, 0, z), camera=STEADY._replace(marker_size_m=0.06)).sigma[0]
+        ours = [law.at_1m * z**law.power for law in DETECTOR[:4]]
+        assert (sigma[[0, 2, 3, 5]] > ours).all()
+
+
+def test_calibration_shifts_every_sample_alike():
+    biased = STEADY._replace(shift_m=(1e-3, -2e-3, 3e-3), slope=(2e-3, 0.0, -4e-3))
+    plain, shifted = watch(3000, offset=(0, 0, 0.5)), watch(3000, offset=(0, 0, 0.5), camera=biased)
+    expected = [1e-3 + 2e-3 * 0.5, -2e-3, 3e-3 - 4e-3 * 0.5]
+    np.testing.assert_allclose(
+        shifted.position - plain.position, np.tile(expected, (len(plain.position), 1)), atol=1e-12
+    )
+    np.testing.assert_array_equal(shifted.sigma, plain.sigma)
+
+
+def test_smeared_images_are_lost_and_a_short_exposure_keeps_them():
+    # 1.5 m/s at 0.4 m: the line of sight turns by 3.75 rad/s, 4 ms and 1078 px make 16 px of it.
+    def swept(k):
+        return (0.1 * np.sin(15.0 * k * 1e-3), 0.0, 0.4)
+
+    still, fast, short = (
+        len(watch(30_000, **more).arrival)
+        for more in (
+            {"offset": (0.1, 0.0, 0.4)},
+            {"offset": swept},
+            {"offset": swept, "camera": STEADY._replace(exposure_s=1e-3)},
+        )
+    )
+    assert still > 890
+    assert short > 890
+    assert fast < 0.7 * still
+
+
+def test_probability_of_loss_is_zero_at_rest_and_one_half_where_the_fit_says():
+    b = np.array(DETECTOR.smeared)
+    assert loss(0.0, 10.0, b) == 0.0
+    half = -b[0] / (b[1] / 10.0 + b[2])
+    assert loss(half, 10.0, b) == pytest.approx(0.5, abs=1e-4)
+    assert loss(3.0 * half, 10.0, b) > 0.99
 
 
 @pytest.mark.parametrize(

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
@@ -5,7 +7,7 @@ import pytest
 from armland.errors import PictureError
 from armland.view import frames as module
 from armland.view import picture
-from armland.view.frames import frames
+from armland.view.frames import FrameStream, frames
 
 BALL = """
 <mujoco>
@@ -70,3 +72,19 @@ def test_missing_opengl_is_one_readable_line(ball, monkeypatch) -> None:
 def test_what_the_model_does_not_have_is_refused(ball, qpos, camera: str, says: str) -> None:
     with pytest.raises(PictureError, match=says):
         frames(ball, qpos, 80, 60, camera)
+
+
+def test_stream_draws_each_picture_when_it_is_asked_for(ball) -> None:
+    expected = drawn(ball, [[0.3], [0.8]])
+    with FrameStream(ball, 160, 120, "eye") as stream:
+        for x, picture in ((0.3, expected[0]), (0.8, expected[1]), (0.3, expected[0])):
+            np.testing.assert_array_equal(stream.draw([x]), picture)
+
+
+def test_stream_without_opengl_says_the_same(ball, monkeypatch) -> None:
+    monkeypatch.setenv("MUJOCO_GL", "disable")
+    stream = FrameStream(ball, 160, 120, "eye")
+    with pytest.raises(PictureError, match=r"\(disable: .*unset MUJOCO_GL.*apt-get install"):
+        stream.__enter__()
+    assert stream._folder is not None
+    assert not Path(stream._folder.name).exists()

@@ -4,9 +4,12 @@ import pytest
 
 from armland.errors import PictureError
 from armland.estimation.fiducial import detect
+from armland.mission.landing_scenario import landing_scenario
+from armland.plant.landing import LandingPlant
+from armland.plant.sight import marker_pose
 from armland.rotations import from_rotation_vector, matrix, multiply
-from armland.view.frames import frames
-from armland.view.marker_scene import EYE, MARKER, MarkerScene, build_marker_scene
+from armland.view.frames import FrameStream, frames
+from armland.view.marker_scene import EYE, NUMBER, MarkerScene, build_marker_scene
 from armland.view.marker_study import FACING
 
 pytest.importorskip("cv2")
@@ -22,24 +25,29 @@ def scene() -> MarkerScene:
 
 def drawn(scene: MarkerScene, *poses) -> np.ndarray:
     try:
-        qpos = [scene.qpos(*pose) for pose in poses]
-        return frames(scene.model, qpos, scene.width, scene.height, EYE)
+        return frames(scene.model, [scene.qpos(*pose) for pose in poses], scene.width, scene.height, EYE)
     except PictureError as e:
         pytest.skip(str(e))
 
 
-def test_camera_stands_where_the_marker_has_the_pose_asked_for(scene) -> None:
+def test_uav_hangs_where_the_marker_has_the_pose_asked_for(scene) -> None:
     data = mujoco.MjData(scene.model)
     data.qpos[:] = scene.qpos(POSITION, QUAT)
     mujoco.mj_kinematics(scene.model, data)
     mujoco.mj_camlight(scene.model, data)
-    # MuJoCo's camera looks along -z, with y up.
-    R_wc = data.cam(EYE).xmat.reshape(3, 3) @ np.diag([1.0, -1.0, -1.0])
-    geom = data.geom("marker")
-    R_wm = geom.xmat.reshape(3, 3)
-    face = geom.xpos + scene.model.geom("marker").size[2] * R_wm[:, 2]
-    np.testing.assert_allclose(R_wc.T @ (face - data.cam(EYE).xpos), POSITION, atol=1e-9)
-    np.testing.assert_allclose(R_wc.T @ R_wm, matrix(QUAT), atol=1e-9)
+    position, quat = marker_pose(scene.model, data)
+    np.testing.assert_allclose(position, POSITION, atol=1e-9)
+    np.testing.assert_allclose(matrix(quat), matrix(QUAT), atol=1e-9)
+    # The hinge plate hangs level whatever the UAV's tilt.
+    np.testing.assert_allclose(data.body("uav/plate").xmat.reshape(3, 3)[:, 2], [0.0, 0.0, 1.0], atol=1e-9)
+
+
+def test_scene_is_the_landings_own_with_the_marker_printed(scene) -> None:
+    loaded = landing_scenario()
+    plant = LandingPlant(loaded, np.deg2rad(loaded.landing.place.home_deg)).scene.model
+    assert (scene.model.nq, scene.model.ngeom, scene.model.npair) == (plant.nq, plant.ngeom, plant.npair)
+    np.testing.assert_array_equal(scene.model.geom_pos, plant.geom_pos)
+    np.testing.assert_array_equal(scene.model.body_mass, plant.body_mass)
 
 
 def test_field_of_view_is_the_cameras(scene) -> None:
@@ -52,11 +60,19 @@ def test_renderer_is_a_pinhole_and_shows_the_print_upright(scene) -> None:
     image = drawn(scene, (POSITION, QUAT))[0]
     assert image.shape == (scene.height, scene.width)
     (found,) = detect(image, scene.size_m, scene.intrinsics)
-    assert found.marker == MARKER
+    assert found.marker == NUMBER
     np.testing.assert_allclose(found.position, POSITION, atol=5e-5)
     np.testing.assert_allclose(matrix(found.quat), matrix(QUAT), atol=1e-3)
 
 
+def test_stream_draws_what_frames_draws(scene) -> None:
+    image = drawn(scene, (POSITION, QUAT))[0]
+    with FrameStream(scene.model, scene.width, scene.height, EYE) as stream:
+        stream.draw(scene.home)
+        np.testing.assert_array_equal(stream.draw(scene.qpos(POSITION, QUAT)), image)
+
+
 def test_marker_behind_the_hinge_plate_is_not_found() -> None:
-    hidden = build_marker_scene(place=(0.0, 0.0, -0.03))
-    assert detect(drawn(hidden, (np.array([0.0, 0.0, 0.4]), FACING))[0], hidden.size_m, hidden.intrinsics) == []
+    hidden = build_marker_scene(landing_scenario("landing", {"eye": {"marker_m": [0.0, 0.0, -0.035]}}))
+    image = drawn(hidden, (np.array([0.0, 0.0, 0.4]), FACING))[0]
+    assert detect(image, hidden.size_m, hidden.intrinsics) == []

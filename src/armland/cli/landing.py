@@ -1,4 +1,4 @@
-"""The commands of a landing: `land`, `takeoff`, `detector`."""
+"""The commands of a landing: `land`, `takeoff`."""
 
 import json
 from pathlib import Path
@@ -194,27 +194,3 @@ def _remove(*files: Path) -> None:
             file.unlink(missing_ok=True)
         except OSError as e:
             raise ConfigurationError(f"--out: {str(file)!r} of an earlier run cannot be replaced: {e.strerror}") from e
-
-
-def detector(
-    per_distance: Annotated[int, typer.Option(min=1, help="Images at each distance.")] = 16,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of poses and image noise.")] = 0,
-    out: Annotated[Path, typer.Option(help="Folder for figure, demo image and table.")] = Path("out/detector"),
-    as_json: Annotated[bool, typer.Option("--json", help="Print the table as plain data.")] = False,
-) -> None:
-    """Detect a fiducial marker on rendered images: pose error against distance, beside the camera's measurement model."""
-    import math
-
-    from armland.view.marker_figures import draw_marker_demo, draw_marker_figure, table
-    from armland.view.marker_study import DISTANCES_M, marker_study
-
-    make_writable(out)
-    with Console(stderr=True).status("Rendering and detecting"):
-        study = marker_study(DISTANCES_M, per_distance, seed)
-        draw_marker_figure(out, study)
-        draw_marker_demo(out)
-    rows = [
-        {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in r._asdict().items()} for r in study.rows
-    ]
-    (out / "detector.json").write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
-    print(json.dumps(rows, indent=2) if as_json else table(study.rows))

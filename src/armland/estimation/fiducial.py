@@ -86,7 +86,7 @@ def marker_image(marker: int, cell_px: int) -> NDArray[np.uint8]:
     """
     if not 0 <= marker < MARKERS:
         raise ArmlandError(f"there is no marker {marker} in the family 36h11; its markers are 0 to {MARKERS - 1}")
-    cv2 = _opencv()
+    cv2 = opencv()
     black = cv2.aruco.generateImageMarker(_family(cv2), marker, CELLS * cell_px)
     return np.pad(black, cell_px, constant_values=255)
 
@@ -106,7 +106,7 @@ def detect(image: NDArray[np.uint8], size_m: float, intrinsics: Intrinsics) -> l
         raise ArmlandError(f"image is {image.dtype} {image.shape}; detection needs uint8 (h, w) or (h, w, 3)")
     if not (np.isfinite(size_m) and size_m > 0.0):
         raise ArmlandError(f"marker size is {size_m:g} m; it must be positive")
-    cv2 = _opencv()
+    cv2 = opencv()
     grey = np.ascontiguousarray(image) if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
     options = cv2.aruco.DetectorParameters()
     # Good to a fraction of a pixel, as `refined` needs it.
@@ -118,6 +118,11 @@ def detect(image: NDArray[np.uint8], size_m: float, intrinsics: Intrinsics) -> l
         if corners is not None:
             detections.append(_detection(cv2, int(number), corners, size_m, intrinsics))
     return sorted((d for d in detections if d is not None), key=lambda d: d.marker)
+
+
+def relocated(found: Detection, size_m: float, intrinsics: Intrinsics) -> Detection | None:
+    """The same corners with another camera's intrinsics; None where no pose fits them."""
+    return _detection(opencv(), found.marker, found.corners, size_m, intrinsics)
 
 
 def _detection(cv2: ModuleType, marker: int, corners: Array, size_m: float, intrinsics: Intrinsics) -> Detection | None:
@@ -145,7 +150,12 @@ def _family(cv2: ModuleType) -> Any:
     return cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
 
 
-def _opencv() -> ModuleType:
+def opencv() -> ModuleType:
+    """OpenCV, which is imported only where it is used.
+
+    Raises:
+        ArmlandError: it is not installed, or too old.
+    """
     # An extra, and half a second to import: only whoever looks at images pays for it.
     try:
         import cv2

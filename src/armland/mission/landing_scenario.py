@@ -80,10 +80,10 @@ class Eye(Section):
     """Camera on the tool and marker under the UAV. Both beside the axis, on the same side, so that it sees until contact."""
 
     camera_m: Vector3 = Field(
-        (0.07, 0.0, -0.10), description="optical centre in the end effector's frame; it looks along its z"
+        (0.075, 0.0, -0.10), description="optical centre in the end effector's frame; it looks along its z"
     )
     marker_m: Vector3 = Field(
-        (0.07, 0.0, -0.025), description="marker's centre from the centre of mass, body frame; it looks down"
+        (0.075, 0.0, -0.03), description="marker's centre from the centre of mass, body frame; it looks down"
     )
     marker_size_m: Positive = Field(0.06, description="edge of the black square")
     rate_hz: int = Field(30, ge=1)
@@ -101,6 +101,13 @@ class Imperfections(Section):
         0.01, description="white noise of the position that the UAV believes when it hovers by itself"
     )
     camera: bool = Field(True, description="noise, delay and drop-outs of the camera; false: exact, at once")
+    camera_mount_m: NonNegative = Field(
+        0.0005, description="error of the places of camera and marker together, each axis, which the arm does not know"
+    )
+    camera_angle_deg: NonNegative = Field(
+        0.1, description="error of the direction in which the camera looks, about its x and y, mounting and calibration"
+    )
+    camera_scale: NonNegative = Field(0.003, description="error of its focal length, as a share of it")
     noise: bool = Field(True, description="white noise of encoders, force-torque sensor and attitude")
 
 

@@ -11,12 +11,14 @@ from armland.mission.landing_scenario import LandingScenario
 from armland.mission.records import LandingTick, UavMode
 from armland.mission.takeoff_procedure import TAKEOFF
 from armland.models.uav import mixer
-from armland.plant.camera import NOISE_WIDTH, SAMPLE, Camera, camera_parameters
+from armland.plant.camera import NOISE_WIDTH, SAMPLE, camera_parameters
 from armland.plant.camera import STATE as CAMERA_STATE
+from armland.plant.landing_camera import landing_camera, see_all
 from armland.plant.landing_cycle import BRAKE, NOT_FINITE, act, sample
 from armland.plant.landing_devices import ADDRESSES, PARAMETERS, SENSORS, STATE
 from armland.plant.landing_faults import FaultSchedule
 from armland.plant.landing_onboard import RING
+from armland.plant.landing_pictures import Photographer, Pictures
 from armland.plant.landing_scene import PLATE, Cradle, LandingGear, LandingScene, build_landing_scene
 from armland.plant.magnet import Magnet, device
 from armland.plant.noise import BLOCK, WhiteNoise, stream
@@ -74,9 +76,16 @@ class LandingPlant:
         scenario: what to simulate.
         home: joint positions at the start (n,), rad.
         start: `air` puts the UAV above the catch, `cradle` on the rails with its rotors stopped.
+        photographer: looks at real pictures in place of the camera's measurement model.
     """
 
-    def __init__(self, scenario: LandingScenario, home: Array, start: Literal["air", "cradle"] = "air") -> None:
+    def __init__(
+        self,
+        scenario: LandingScenario,
+        home: Array,
+        start: Literal["air", "cradle"] = "air",
+        photographer: Photographer | None = None,
+    ) -> None:
         self.scenario = scenario
         gear = landing_gear(scenario)
         self.scene: LandingScene = build_landing_scene(scenario.demonstrator, gear)
@@ -91,9 +100,10 @@ class LandingPlant:
         self._parameters = _parameters(scenario, self.scene, self._draw)
         self._state, self._camera_s, self._sample = np.zeros(1, STATE), np.zeros(1, CAMERA_STATE), np.zeros(1, SAMPLE)
         eye = scenario.landing.eye
-        exact = {} if scenario.landing.imperfections.camera else {"delay_ms": (0.0, 0.0), "honesty": 0.01, "lose": 0.0}
-        camera = Camera(rate_hz=eye.rate_hz, marker_size_m=eye.marker_size_m, **exact)  # type: ignore[arg-type]
-        self._camera_p = camera_parameters(camera, scenario.demonstrator.run.rate_hz)
+        self._camera_p = camera_parameters(landing_camera(scenario.landing), scenario.demonstrator.run.rate_hz)
+        self._pictures = Pictures(photographer) if photographer is not None else None
+        if self._pictures is not None:
+            see_all(self._camera_p)
         self._eye = np.array([eye.camera_m, eye.marker_m])
         self._addresses = np.zeros(1, ADDRESSES)
         first = self.scene.model.joint(int(self.scene.model.dof_jntid[self.scene.joint_dof[0]])).name
@@ -160,6 +170,16 @@ class LandingPlant:
             tick.measurement,
             tick.truth,
         )
+        if self._pictures is not None:
+            self._show(self._pictures, tick.measurement)
+
+    def _show(self, pictures: Pictures, m: np.ndarray) -> None:
+        rate = self.scenario.landing.eye.rate_hz
+        if (self._tick * rate) % self.scenario.demonstrator.run.rate_hz < rate:
+            pictures.expose(self._tick, self.data.qpos, self.data.qvel, bool(self._state["camera_frozen"][0]))
+        if m["camera_fresh"][0]:
+            m["camera_fresh"] = pictures.deliver(self._sample)
+            m["camera_position"], m["camera_quat"] = self._sample["position"], self._sample["quat"]
 
     def command(self, tick: LandingTick) -> None:
         """Apply the command of `tick` and step the physics once.
@@ -218,7 +238,7 @@ def landing_gear(scenario: LandingScenario) -> LandingGear:
         )
     x, y, z = (round(float(c), 9) for c in down)
     magnet = Magnet(rated_force=scenario.landing.magnet_rating_n)
-    return gear._replace(magnet=magnet, cradle=Cradle(position=(x, y, z)))
+    return gear._replace(magnet=magnet, cradle=Cradle(position=(x, y, z)), eye=scenario.landing.eye)
 
 
 def _load(scene: LandingScene, mass: float) -> None:

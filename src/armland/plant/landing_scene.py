@@ -1,7 +1,7 @@
 """Scene of a whole landing: the UAV flies free, a hinge plate hangs below it, the arm's magnet grips the plate, a cradle waits.
 
 Composed with `MjSpec` from the same arm and UAV files as the paper's scene. Nothing collides by MuJoCo's masks: what may touch
-is a table of explicit pairs (`_add_contacts`), which costs less and leaves no pair to chance.
+is a table of explicit pairs (`landing_contacts`), which costs less and leaves no pair to chance.
 
 | sensor | what, frame |
 |---|---|
@@ -23,15 +23,15 @@ import mujoco
 import numpy as np
 
 from armland.errors import ModelError
+from armland.mission.landing_scenario import Eye
 from armland.models.description import EE_SITE, compile_spec, read_spec, resolve
 from armland.models.parameters import arm_spec
-from armland.plant.magnet import HINGE, HingePlate, Magnet, couple, hang_plate, mount_face
+from armland.plant.landing_contacts import PLATE, add_contacts
+from armland.plant.landing_eye import mount_camera, mount_marker
+from armland.plant.magnet import HINGE, HingePlate, Magnet, hang_plate, mount_face
 from armland.plant.scene import ROTORS, UAV, _add_motors, _add_surroundings, _camera_axes
 from armland.rotations import Array
 from armland.scenario import Scenario
-
-PLATE = f"{UAV}plate"
-"""Name of the hinge plate's body and of its geom."""
 
 NET_FORCE = 3
 """MuJoCo's code for a contact sensor that sums up the forces of all its contacts, in world axes."""
@@ -43,7 +43,7 @@ class Skids(NamedTuple):
     Their mass is part of the UAV's. Sizes are assumptions, chosen so that the UAV also stands on the ground.
     """
 
-    x: float = 0.10  # m, of each tube, before and behind the centre of mass
+    x: float = 0.15  # m, of each tube, before and behind the centre of mass: leaves the marker in view
     half_length: float = 0.17  # m
     radius: float = 0.006  # m
     z: float = -0.095  # m, tube's axis below the centre of mass: 29 mm below the hanging plate's face
@@ -70,6 +70,7 @@ class LandingGear(NamedTuple):
     cradle: Cradle = Cradle()
     magnet: Magnet = Magnet()
     arm_radius: float = 0.06  # m, of the capsules that stand for the arm's links
+    eye: Eye = Eye()
 
 
 class LandingScene(NamedTuple):
@@ -98,6 +99,12 @@ def build_landing_scene(scenario: Scenario, gear: LandingGear | None = None) -> 
         ModelError: an arm or UAV file that cannot be used, or gear that does not fit together.
     """
     gear = gear or LandingGear()
+    spec, joints = landing_spec(scenario, gear)
+    return _scene(compile_spec(spec, "the landing scene"), joints, gear)
+
+
+def landing_spec(scenario: Scenario, gear: LandingGear) -> tuple[mujoco.MjSpec, list[str]]:
+    """The landing scene, not yet compiled, and the names of the arm's joints; errors as for `build_landing_scene`."""
     _check(gear, scenario)
     spec = arm_spec(scenario)
     joints = [j.name for j in spec.joints]
@@ -121,9 +128,9 @@ def build_landing_scene(scenario: Scenario, gear: LandingGear | None = None) -> 
     for site in spec.sites:
         # Marks of frames, not to be drawn.
         site.group = 4
-    _add_contacts(spec, links, gear)
+    add_contacts(spec, links, gear.magnet)
     _add_sensors(spec, joints)
-    return _scene(compile_spec(spec, "the landing scene"), joints, gear)
+    return spec, joints
 
 
 def _check(gear: LandingGear, scenario: Scenario) -> None:
@@ -151,6 +158,7 @@ def _add_tool(spec: mujoco.MjSpec, scenario: Scenario, gear: LandingGear) -> Non
     mount_face(tool, face, gear.magnet)
     # From the flange on; what is below, the wrist's shape covers.
     _capsule(tool, "tool", [0, 0, -scenario.tool.sensor_length_m - 0.01, 0, 0, face - 0.03], 0.03)
+    mount_camera(tool, scenario.tool.length_m - scenario.tool.sensor_length_m, gear.eye)
 
 
 def _add_links(spec: mujoco.MjSpec, radius: float) -> list[str]:
@@ -191,6 +199,7 @@ def _attach_uav(spec: mujoco.MjSpec, scenario: Scenario, gear: LandingGear) -> N
         _capsule(body, f"frame_{i + 1}", [*rotors[i], *rotors[i + 2]], 0.015)
     _add_skids(body, gear.skids)
     hang_plate(body, sites["pivot"].pos.copy(), gear.plate, uav.compiler.degree)
+    mount_marker(body, gear.eye)
     spec.worldbody.add_frame().attach_body(body, UAV, "")
 
 
@@ -215,31 +224,6 @@ def _add_cradle(spec: mujoco.MjSpec, c: Cradle) -> None:
             # Legs stand outside the slot.
             leg = [foot * x, y, z, foot * x, 1.5 * y, -c.position[2]]
             body.add_geom(fromto=leg, size=[0.7 * c.radius, 0, 0], **look)
-
-
-def _add_contacts(spec: mujoco.MjSpec, links: list[str], gear: LandingGear) -> None:
-    couple(spec, PLATE, gear.magnet)
-    rails, skids = ["rail_1", "rail_2"], [f"{UAV}skid_1", f"{UAV}skid_2"]
-    frame, arm = [f"{UAV}frame_1", f"{UAV}frame_2"], [*links, "tool"]
-    table = [
-        (skids, [*rails, "floor", *arm], 0.8),
-        (frame, [*rails, "floor", *arm], 0.4),
-        ([PLATE], [*rails, "floor"], 0.4),
-        (rails, arm, 0.4),
-        (links, ["floor"], 0.4),
-    ]
-    for ones, others, friction in table:
-        for one in ones:
-            for other in others:
-                spec.add_pair(
-                    geomname1=one,
-                    geomname2=other,
-                    condim=3,
-                    friction=[friction, friction, 0.0, 0.0, 0.0],
-                    # Rubber: gives way within 10 ms (assumption), stiff enough to stand within 0.1 mm.
-                    solref=[0.01, 1.0],
-                    solimp=[0.98, 0.99, 0.001, 0.5, 2.0],
-                )
 
 
 def _add_sensors(spec: mujoco.MjSpec, joints: list[str]) -> None:

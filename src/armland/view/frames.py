@@ -1,13 +1,16 @@
-"""Many grey pictures of one scene, as a camera on it would take them, drawn in one child process.
+"""Many grey pictures of one scene, as a camera on it would take them, drawn in one child process: all at once, or one by one.
 
 `armland.view.picture` draws one picture for the eye, and says why in a child; here, starting it for each would take longest.
 """
 
+import contextlib
 import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -34,8 +37,7 @@ def frames(model: mujoco.MjModel, qpos: ArrayLike, width: int, height: int, came
         _check(model, q, width, height, camera, ())
     with tempfile.TemporaryDirectory(prefix="armland-") as name:
         folder = Path(name)
-        mujoco.mj_saveModel(model, str(folder / "scene.mjb"), None)
-        np.savez(folder / "view.npz", qpos=poses, size=[width, height], camera=camera)
+        _store(folder, model, poses, width, height, camera)
         complaints = []
         for backend in _backends():
             complaint = _attempt(folder, backend)
@@ -43,19 +45,120 @@ def frames(model: mujoco.MjModel, qpos: ArrayLike, width: int, height: int, came
                 pictures: NDArray[np.uint8] = np.load(folder / "frames.npy")
                 return pictures
             complaints.append(f"{backend or 'default'}: {complaint}")
+    raise _refusal(complaints)
+
+
+class FrameStream:
+    """Grey pictures one after the other, each when it is asked for; a child process draws them. Use it in a `with` statement.
+
+    Args:
+        model: the scene.
+        width: px.
+        height: px.
+        camera: name of the model's camera.
+
+    Raises:
+        PictureError: as for `frames`, on entry.
+    """
+
+    def __init__(self, model: mujoco.MjModel, width: int, height: int, camera: str) -> None:
+        self.model, self.width, self.height, self.camera = model, width, height, camera
+        self._child: subprocess.Popen[bytes] | None = None
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+
+    def __enter__(self) -> "FrameStream":
+        _check(self.model, self.model.qpos0, self.width, self.height, self.camera, ())
+        self._folder = tempfile.TemporaryDirectory(prefix="armland-")
+        folder = Path(self._folder.name)
+        _store(folder, self.model, np.zeros((0, self.model.nq)), self.width, self.height, self.camera)
+        complaints = []
+        for backend in _backends():
+            with open(folder / "errors.txt", "wb") as errors:
+                self._child = subprocess.Popen(
+                    [*_COMMAND, str(folder), "stream"],
+                    env=_environment(backend),
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    stderr=errors,
+                )
+            try:
+                self.draw(self.model.qpos0)
+            except PictureError:
+                self._end()
+                said = (folder / "errors.txt").read_text("utf-8", "replace")
+                complaints.append(f"{backend or 'default'}: {_last_line(said, self._child.returncode)}")
+                continue
+            return self
+        self._folder.cleanup()
+        raise _refusal(complaints)
+
+    def __exit__(self, *_: object) -> None:
+        self._end()
+        assert self._folder is not None
+        self._folder.cleanup()
+
+    def draw(self, qpos: ArrayLike) -> NDArray[np.uint8]:
+        """Grey picture (height, width) at `qpos` (nq,), m and rad.
+
+        Raises:
+            PictureError: the child process has died.
+        """
+        assert self._child is not None
+        assert self._child.stdin is not None
+        assert self._child.stdout is not None
+        try:
+            self._child.stdin.write(np.ascontiguousarray(qpos, dtype=float).tobytes())
+            self._child.stdin.flush()
+        except OSError as e:
+            raise PictureError(f"the process that draws pictures has ended: {e.strerror}") from e
+        pixels = self._child.stdout.read(self.width * self.height)
+        if len(pixels) != self.width * self.height:
+            raise PictureError("the process that draws pictures has ended in the middle of one")
+        return np.frombuffer(pixels, np.uint8).reshape(self.height, self.width)
+
+    def _end(self) -> None:
+        child = self._child
+        if child is None or child.stdin is None or child.stdout is None:
+            return
+        with contextlib.suppress(OSError):
+            child.stdin.close()
+        child.stdout.close()
+        try:
+            child.wait(timeout=10.0)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.wait()
+
+
+_COMMAND = [sys.executable, "-P", "-m", "armland.view.frames"]
+
+
+def _environment(backend: str) -> dict[str, str]:
+    # For environment and command, see `_attempt` of `armland.view.picture`.
+    return {k: v for k, v in os.environ.items() if k != "PYOPENGL_PLATFORM"} | {"MUJOCO_GL": backend}
+
+
+def _store(folder: Path, model: mujoco.MjModel, qpos: NDArray[Any], width: int, height: int, camera: str) -> None:
+    mujoco.mj_saveModel(model, str(folder / "scene.mjb"), None)
+    np.savez(folder / "view.npz", qpos=qpos, size=[width, height], camera=camera)
+
+
+def _refusal(complaints: list[str]) -> PictureError:
     remedy = f"unset MUJOCO_GL, or {_REMEDY}" if os.environ.get("MUJOCO_GL") else _REMEDY
-    raise PictureError(f"no OpenGL for off-screen pictures ({'; '.join(complaints)}); {remedy}")
+    return PictureError(f"no OpenGL for off-screen pictures ({'; '.join(complaints)}); {remedy}")
+
+
+def _last_line(said: str, code: int | None) -> str:
+    lines = [line for line in said.splitlines() if line and not line[0].isspace()]
+    return lines[-1] if lines else f"renderer ended with code {code}"
 
 
 def _attempt(folder: Path, backend: str) -> str:
     """Draw with this backend; returns what went wrong in one line, empty if nothing did."""
-    # For environment and command, see the same function of `armland.view.picture`.
-    environment = {k: v for k, v in os.environ.items() if k != "PYOPENGL_PLATFORM"} | {"MUJOCO_GL": backend}
-    command = [sys.executable, "-P", "-m", "armland.view.frames", str(folder)]
     try:
         done = subprocess.run(
-            command,
-            env=environment,
+            [*_COMMAND, str(folder)],
+            env=_environment(backend),
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -64,36 +167,54 @@ def _attempt(folder: Path, backend: str) -> str:
         )
     except subprocess.TimeoutExpired:
         return f"no answer within {TIMEOUT_S:g} s"
-    if done.returncode == 0:
-        return ""
-    lines = [line for line in done.stderr.splitlines() if line and not line[0].isspace()]
-    return lines[-1] if lines else f"renderer ended with code {done.returncode}"
+    return "" if done.returncode == 0 else _last_line(done.stderr, done.returncode)
 
 
-def draw(folder: Path) -> None:
-    """The child's part: draw `scene.mjb` at each qpos of `view.npz` into `frames.npy`, all in `folder`."""
+@contextlib.contextmanager
+def _painter(folder: Path) -> Iterator[tuple[int, Callable[[NDArray[Any]], NDArray[np.uint8]]]]:
+    """The child's part: nq of `scene.mjb` in `folder`, and what draws a picture at a qpos, as `view.npz` there says."""
     model = mujoco.MjModel.from_binary_path(str(folder / "scene.mjb"))
     with np.load(folder / "view.npz") as view:
-        qpos, (width, height), camera = view["qpos"], view["size"].tolist(), str(view["camera"])
+        (width, height), camera = view["size"].tolist(), str(view["camera"])
     k = SUPERSAMPLING
     model.vis.global_.offwidth, model.vis.global_.offheight = k * width, k * height
     # OpenGL's own smoothing is of edges only; supersampling also smooths what is printed on a face.
     model.vis.quality.offsamples = 0
     data, option = mujoco.MjData(model), mujoco.MjvOption()
     option.sitegroup[:] = 0
-    pictures = np.empty((len(qpos), height, width), np.uint8)
     with mujoco.Renderer(model, k * height, k * width) as renderer:
-        for q, picture in zip(qpos, pictures, strict=True):
-            data.qpos[:] = q
+
+        def paint(qpos: NDArray[Any]) -> NDArray[np.uint8]:
+            data.qpos[:] = qpos
             mujoco.mj_forward(model, data)
             renderer.update_scene(data, camera, option)
             renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
             # A grey sensor sees best what is green.
             green = renderer.render()[..., 1].astype(np.uint16)
-            total = sum((green[i::k, j::k] for i in range(k) for j in range(k)), np.zeros_like(picture, np.uint16))
-            picture[:] = (total + k * k // 2) // (k * k)
+            total = sum((green[i::k, j::k] for i in range(k) for j in range(k)), np.zeros((height, width), np.uint16))
+            return np.asarray((total + k * k // 2) // (k * k), np.uint8)
+
+        yield model.nq, paint
+
+
+def draw(folder: Path) -> None:
+    """The child's part: draw `scene.mjb` at each qpos of `view.npz` into `frames.npy`, all in `folder`."""
+    with np.load(folder / "view.npz") as view:
+        qpos, (width, height) = view["qpos"], view["size"].tolist()
+    pictures = np.empty((len(qpos), height, width), np.uint8)
+    with _painter(folder) as (_, paint):
+        for q, picture in zip(qpos, pictures, strict=True):
+            picture[:] = paint(q)
     np.save(folder / "frames.npy", pictures)
 
 
+def stream(folder: Path) -> None:
+    """The child's part: a picture on standard output for every qpos on standard input."""
+    with _painter(folder) as (nq, paint):
+        while len(raw := sys.stdin.buffer.read(8 * nq)) == 8 * nq:
+            sys.stdout.buffer.write(paint(np.frombuffer(raw)).tobytes())
+            sys.stdout.buffer.flush()
+
+
 if __name__ == "__main__":
-    draw(Path(sys.argv[1]))
+    (stream if sys.argv[2:] == ["stream"] else draw)(Path(sys.argv[1]))

@@ -1,55 +1,87 @@
-"""Figures of the marker study: errors by distance beside the model's claims, and one picture with what was found in it."""
+"""Figures of the marker study: errors by distance beside the model's and the published ones; pictures with what was found."""
 
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.image import imread
 from numpy.typing import NDArray
 
 from armland.errors import PictureError
 from armland.estimation.fiducial import Detection, detect, project
+from armland.experiments.landing_sight import Band
 from armland.plant.camera import Camera
 from armland.plant.noise import stream
 from armland.rotations import angle, conjugate, from_rotation_vector, matrix, multiply
 from armland.view.canvas import PAGE_IN, legend_above, paper_style, save, shade, sheet
+from armland.view.frames import frames
+from armland.view.marker_imaging import Imaging, Motion, photographed
+from armland.view.marker_rows import Errors, Row
 from armland.view.marker_scene import EYE, MarkerScene, build_marker_scene
-from armland.view.marker_study import FACING, MARKER_SIZE_M, Imaging, Row, Study, model_sigma, photographed
-from armland.view.picture import render
+from armland.view.marker_study import FACING
+from armland.view.rendered_eye import Shot
 
-_BLUE, _RED, _GREEN = "#0072B2", "#D55E00", "#009E73"
+_BLUE, _RED, _GREEN, _GREY = "#0072B2", "#D55E00", "#009E73", "#666666"
 
-_DEMO_POSE = np.array([-0.05, 0.03, 0.55]), multiply(from_rotation_vector(np.array([0.25, -0.2, 0.5])), FACING)
-"""Position, m, and attitude of the marker in the picture of `draw_marker_demo`."""
+_DEMO = Motion(
+    np.array([-0.05, 0.03, 0.45]),
+    multiply(from_rotation_vector(np.array([0.12, -0.1, 0.15])), FACING),
+    np.array([0.06, -0.04, -0.1]),
+    np.zeros(3),
+)
+"""The marker in the picture of `draw_marker_demo`."""
+
+_UNITS = (1e3, 1e3, 180.0 / np.pi, 180.0 / np.pi)
+"""mm and degrees."""
+
+SHEET = (4, 3)
+"""Rows and columns of a contact sheet."""
 
 
 def table(rows: Sequence[Row]) -> str:
-    """The study's table as Markdown; errors are root mean squares for each axis, the model's standard deviations in brackets."""
+    """The study as Markdown: root mean squares for each axis of detector on ideal and honest pictures, model, published."""
     lines = [
-        "| distance m | found | lateral mm | depth mm | tilt ° | yaw ° |",
+        "| distance m | found % | lateral mm | depth mm | tilt ° | yaw ° |",
         "|---|---|---|---|---|---|",
     ]
     for r in rows:
-        pairs = zip(_shown(r)[:4], _shown(r)[4:], strict=True)
-        cells = " | ".join(f"{found:.2g} ({model:.2g})" for found, model in pairs)
-        lines.append(f"| {r.distance_m:g} | {r.found}/{r.images} | {cells} |")
+        found = " / ".join(f"{100.0 * e.found:.0f}" for e in (r.ideal, r.honest, r.model))
+        cells = []
+        for k in range(4):
+            values = [_UNITS[k] * e[1 + k] for e in (r.ideal, r.honest, r.model)]
+            if k < 2:
+                values.append(1e3 * (r.published_lateral_m, r.published_depth_m)[k])
+            cells.append(" / ".join(f"{v:.2g}" for v in values))
+        lines.append(f"| {r.distance_m:g} | {found} | {' | '.join(cells)} |")
+    note = "Each cell: detector on ideal pictures / on honest ones / the measurement model / published (position only)."
+    return "\n".join([*lines, "", note])
+
+
+def sight_table(bands: Sequence[Band]) -> str:
+    """What share of the marker's face, margin included, the camera sees on a landing, as Markdown."""
+    lines = [
+        "| distance m | images | least share of the marker seen | hidden by |",
+        "|---|---|---|---|",
+    ]
+    for b in bands:
+        what = ", ".join(b.hidden_by) or "nothing"
+        lines.append(f"| {b.near_m:g} to {b.far_m:g} | {b.exposures} | {100.0 * b.least_seen:.0f} % | {what} |")
     return "\n".join(lines)
 
 
-def draw_marker_figure(out: Path, study: Study) -> list[Path]:
+def draw_marker_figure(out: Path, rows: Sequence[Row], camera: Camera) -> list[Path]:
     """Write `fig_marker_error` into the folder `out`, as PDF and PNG, and return the files' paths.
 
     Grey: distances at which the model no longer finds the marker.
     """
     with paper_style():
-        return save(_error_figure(study), Path(out), "fig_marker_error")
+        return save(_error_figure(rows, camera), Path(out), "fig_marker_error")
 
 
-def draw_marker_demo(out: Path, camera: Camera | None = None) -> tuple[list[Path], Detection]:
-    """Write `fig_marker_demo` into the folder `out`, as PDF and PNG: a rendered picture and the marker found in it.
+def draw_marker_demo(out: Path, scene: MarkerScene | None = None) -> tuple[list[Path], Detection]:
+    """Write `fig_marker_demo` into the folder `out`, as PDF and PNG: an honest picture and the marker found in it.
 
     Returns:
         The files' paths and the detection.
@@ -58,11 +90,9 @@ def draw_marker_demo(out: Path, camera: Camera | None = None) -> tuple[list[Path
         PictureError: no OpenGL that works, or the marker was not found.
         ArmlandError: no OpenCV.
     """
-    scene = build_marker_scene(camera or Camera(marker_size_m=MARKER_SIZE_M))
-    with tempfile.TemporaryDirectory(prefix="armland-") as name:
-        file = render(scene.model, scene.qpos(*_DEMO_POSE), Path(name) / "eye.png", scene.width, scene.height, EYE)
-        picture = np.rint(255.0 * imread(file)[..., :3]).astype(np.uint8)
-    image = photographed(picture, Imaging(), stream(0, "marker demo"))
+    scene = scene or build_marker_scene()
+    picture = frames(scene.model, scene.qpos(_DEMO.position, _DEMO.quat), scene.width, scene.height, EYE)[0]
+    image = photographed(picture, scene.intrinsics, _DEMO, Imaging(), stream(0, "marker demo"))
     seen = detect(image, scene.size_m, scene.intrinsics)
     if not seen:
         raise PictureError("the detector found no marker in the demonstration's picture, where there is one")
@@ -70,37 +100,64 @@ def draw_marker_demo(out: Path, camera: Camera | None = None) -> tuple[list[Path
         return save(_demo_figure(image, scene, seen[0]), Path(out), "fig_marker_demo"), seen[0]
 
 
-def _shown(r: Row) -> list[float]:
-    # mm and degrees, found and then claimed, in the order of the table's columns.
-    return [factor * x for factor, x in zip([1e3, 1e3, 180.0 / np.pi, 180.0 / np.pi] * 2, r[3:], strict=True)]
+def draw_contact_sheet(out: Path, shots: Sequence[Shot], scene: MarkerScene, titles: Sequence[str]) -> list[Path]:
+    """Write `fig_marker_sheet` into the folder `out`: pictures of a landing in order, with what was found drawn on.
+
+    Args:
+        out: folder.
+        shots: all pictures of the landing; evenly spread ones are shown.
+        scene: whose camera took them.
+        titles: of all of the shots.
+    """
+    count = min(SHEET[0] * SHEET[1], len(shots))
+    with paper_style():
+        figure = sheet(PAGE_IN, 7.6)
+        panels = figure.subplots(*SHEET)
+        for axes in panels.ravel():
+            axes.set_axis_off()
+        for axes, i in zip(panels.ravel(), np.linspace(0, len(shots) - 1, count).round().astype(int), strict=False):
+            shot = shots[i]
+            # Half the resolution is enough at this size.
+            axes.imshow(shot.image[::2, ::2], cmap="gray", vmin=0, vmax=255, extent=_extent(shot.image))
+            if shot.found is not None:
+                _ring(axes, shot.found)
+                _axes_of_marker(axes, scene, shot.found, names=False)
+            off = 1e3 * np.linalg.norm(shot.error[0])
+            verdict = f"{shot.motion.position[2]:.2f} m, error {off:.2f} mm" if shot.found else "not found"
+            axes.set_title(f"{titles[i]}: {verdict}", fontsize=7.0)
+        return save(figure, Path(out), "fig_marker_sheet")
 
 
-def _error_figure(study: Study) -> Figure:
+def _extent(image: NDArray[Any]) -> tuple[float, float, float, float]:
+    return -0.5, image.shape[1] - 0.5, image.shape[0] - 0.5, -0.5
+
+
+def _error_figure(rows: Sequence[Row], camera: Camera) -> Figure:
     figure = sheet(PAGE_IN, 2.7)
-    e = study.errors[study.errors["found"]]
-    rows = np.array([[r.distance_m, *_shown(r)] for r in study.rows if r.found])
-    z = np.geomspace(rows[0, 0], rows[-1, 0], 60)
-    model = np.array([model_sigma(study.camera, x) for x in z]) * [1e3, 1e3, 180.0 / np.pi, 180.0 / np.pi]
-    position, rotation = 1e3 * np.abs(e["position"]), np.degrees(np.abs(e["rotation"]))
-    components = position[:, :2], position[:, 2:], rotation[:, :2], rotation[:, 2:]
+    z = np.array([r.distance_m for r in rows])
     panels = figure.subplots(1, 4, sharex=True)
     titles = "lateral (mm)", "depth (mm)", "tilt (°)", "yaw (°)"
-    for k, (axes, title, points) in enumerate(zip(panels, titles, components, strict=True)):
-        dots = {"color": _BLUE, "markersize": 3.0, "alpha": 0.3, "markeredgewidth": 0.0}
-        for i, column in enumerate(points.T):
-            axes.plot(e["distance"], column, ".", label="_" if i else "one image, each axis", **dots)
-        axes.plot(rows[:, 0], rows[:, 1 + k], "o-", color=_BLUE, linewidth=1.1, markersize=3.0, label="detector, rms")
-        axes.plot(z, model[:, k], "--", color=_RED, linewidth=1.1, label="measurement model, σ")
-        _finish(axes, title, study.camera, float(np.quantile(points, 0.05)))
+    lines = (
+        ("detector, ideal pictures", "ideal", {"color": _GREEN, "marker": "v", "linewidth": 0.9}),
+        ("detector, honest pictures", "honest", {"color": _BLUE, "marker": "o", "linewidth": 1.1}),
+        ("measurement model", "model", {"color": _RED, "marker": "s", "linewidth": 1.1, "linestyle": "--"}),
+    )
+    for k, (axes, title) in enumerate(zip(panels, titles, strict=True)):
+        for label, name, look in lines:
+            errors: list[Errors] = [getattr(r, name) for r in rows]
+            axes.plot(z, _UNITS[k] * np.array([e[1 + k] for e in errors]), label=label, markersize=3.0, **look)
+        if k < 2:
+            points = np.array([camera.lateral_m, camera.depth_m][k])
+            axes.plot(camera.reference_m, 1e3 * points, "*", color=_GREY, markersize=7.0, label="_", zorder=4)
+        _finish(axes, title, camera)
+    panels[0].plot([], [], "*", color=_GREY, markersize=7.0, label="published, rc_visard")
     legend_above(figure, panels[0])
     return figure
 
 
-def _finish(axes: Axes, title: str, camera: Camera, low: float) -> None:
+def _finish(axes: Axes, title: str, camera: Camera) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
-    # A few errors that happen to be next to nothing would stretch the axis.
-    axes.set_ylim(bottom=0.5 * low)
     ticks = [0.15, 0.3, 0.6, 1.2, 2.4]
     axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
     axes.set_xticks([], minor=True)
@@ -115,10 +172,9 @@ def _demo_figure(image: NDArray[np.uint8], scene: MarkerScene, found: Detection)
     figure = sheet(PAGE_IN, 3.1)
     whole, close = figure.subplots(1, 2, width_ratios=[scene.width / scene.height, 1.0])
     for axes in (whole, close):
-        axes.imshow(image, interpolation="nearest")
+        axes.imshow(image, interpolation="nearest", cmap="gray", vmin=0, vmax=255)
         axes.set_axis_off()
-        ring = np.vstack([found.corners, found.corners[:1]])
-        axes.plot(ring[:, 0], ring[:, 1], "-", color=_RED, linewidth=1.0)
+        _ring(axes, found)
         _axes_of_marker(axes, scene, found)
     low, high = found.corners.min(axis=0), found.corners.max(axis=0)
     middle, half = 0.5 * (low + high), 0.75 * float((high - low).max())
@@ -130,19 +186,24 @@ def _demo_figure(image: NDArray[np.uint8], scene: MarkerScene, found: Detection)
     return figure
 
 
-def _axes_of_marker(axes: Axes, scene: MarkerScene, found: Detection) -> None:
+def _ring(axes: Axes, found: Detection) -> None:
+    ring = np.vstack([found.corners, found.corners[:1]])
+    axes.plot(ring[:, 0], ring[:, 1], "-", color=_RED, linewidth=1.0)
+
+
+def _axes_of_marker(axes: Axes, scene: MarkerScene, found: Detection, names: bool = True) -> None:
     # Half as long as the marker's edge: x, y and z, out of the face.
     tips = found.position + 0.5 * scene.size_m * matrix(found.quat).T
     x, y = project(found.position, scene.intrinsics)
     for tip, colour, name in zip(project(tips, scene.intrinsics), (_RED, _GREEN, _BLUE), "xyz", strict=True):
         arrow = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0}
         axes.annotate("", (tip[0], tip[1]), (x, y), arrowprops=arrow)
-        u, v = 1.18 * tip - 0.18 * np.array([x, y])
-        axes.text(u, v, f"${name}$", color=colour, ha="center", va="center", fontsize=8.0, clip_on=True)
+        if names:
+            u, v = 1.18 * tip - 0.18 * np.array([x, y])
+            axes.text(u, v, f"${name}$", color=colour, ha="center", va="center", fontsize=8.0, clip_on=True)
 
 
 def _verdict(found: Detection) -> str:
-    position, quat = _DEMO_POSE
-    off = 1e3 * np.linalg.norm(found.position - position)
-    turn = np.degrees(angle(multiply(conjugate(quat), found.quat)))
+    off = 1e3 * np.linalg.norm(found.position - _DEMO.position)
+    turn = np.degrees(angle(multiply(conjugate(_DEMO.quat), found.quat)))
     return f"marker {found.marker} at {found.position[2]:.3f} m; error {off:.2f} mm, {turn:.2f}°"
