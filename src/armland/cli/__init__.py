@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from armland import __version__
+from armland.cli.envelope import ENVELOPE_EPILOG, envelope
 from armland.cli.landing import LAND_EPILOG, detector, land, takeoff
 from armland.cli.paper import GAINS_EPILOG, PAPER_EPILOG, VERIFY_EPILOG, gains, paper, verify
 from armland.errors import ArmlandError
@@ -49,6 +50,7 @@ app.command(epilog=GAINS_EPILOG)(gains)
 app.command(epilog=LAND_EPILOG)(land)
 app.command(epilog=LAND_EPILOG.replace("land", "takeoff"))(takeoff)
 app.command()(detector)
+app.command(epilog=ENVELOPE_EPILOG)(envelope)
 
 
 def main() -> None:
