@@ -140,7 +140,8 @@ class CaptureBench:
         d.qpos[s.uav_qpos[:3]], d.qpos[s.uav_qpos[3:]] = pivot - R @ lever, quat
         d.qvel[s.uav_dof], d.qvel[s.hinge_dof] = [*velocity, 0.0, 0.0, 0.0], 0.0
         mujoco.mj_kinematics(s.model, d)
-        d.qpos[s.uav_qpos[2]] -= self._smallest_gap() - GATE_M
+        # Gaps are measured along the plate's normal.
+        d.qpos[s.uav_qpos[2]] -= (self._smallest_gap() - GATE_M) / np.cos(start.plate)
         mujoco.mj_forward(s.model, d)
         aside = start.offset * _towards(start.offset_to)
         self._tell(d.qpos[s.uav_qpos[:3]] - aside, velocity - start.speed * _towards(start.speed_to), quat)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Arc, Rectangle
 
 from armland.experiments.envelope import Map
 from armland.experiments.envelope_study import UNITS, EnvelopeStudy, shown
@@ -69,9 +69,12 @@ def _draw_map(axes: Axes, m: Map, found: EnvelopeStudy) -> None:
     axes.fill_between(x, y, color=INSIDE["color"], alpha=0.12, linewidth=0.0, zorder=1.0)
     axes.plot(x, y, label="boundary", **INSIDE)
     axes.plot(x, [in_units(m.y, v) for v in m.closed], label="closed form", **CLOSED)
-    left = in_units(m.x, found.allowed.slowest) if m.x == "closing" else 0.0
-    width, height = in_units(m.x, m.box[0]) - left, in_units(m.y, m.box[1])
-    axes.add_patch(Rectangle((left, 0.0), width, height, label="allowed by the mission", **BOX))
+    width, height = in_units(m.x, m.box[0]), in_units(m.y, m.box[1])
+    if m.x == "closing":
+        # The mission bounds the magnitude of the relative speed: a half circle about the closing speed of the flight.
+        axes.add_patch(Arc((found.closing, 0.0), 2.0 * height, 2.0 * height, theta2=180.0, **BOX))
+    else:
+        axes.add_patch(Rectangle((0.0, 0.0), width, height, label="allowed by the mission", **BOX))
     flown = [(SCALE[UNITS[m.x]] * getattr(f, m.x), SCALE[UNITS[m.y]] * getattr(f, m.y)) for f in found.flown]
     axes.plot([p[0] for p in flown], [p[1] for p in flown], label="flown", **FLOWN)
     axes.set_xlim(0.0, max(x))
@@ -94,15 +97,7 @@ def _draw_directions(axes: Axes, found: EnvelopeStudy) -> None:
     axes.plot(r * np.cos(fine), r * np.sin(fine), color=BOX["edgecolor"], linewidth=BOX["linewidth"])
     lost = 1e3 * found.allowed.lost
     axes.plot(lost * np.cos(fine), lost * np.sin(fine), color=BOX["edgecolor"], linewidth=0.9, linestyle=":")
-    axes.annotate(
-        "closing given up",
-        (0.0, lost),
-        ha="center",
-        va="top",
-        fontsize=7.0,
-        xytext=(0.0, -2.0),
-        textcoords="offset points",
-    )
+    axes.text(0.0, 0.78 * lost, "closing given up", ha="center", va="center", fontsize=7.0)
     axes.set_aspect("equal")
     axes.set_xlabel("offset along $x$ (mm)")
     axes.set_ylabel("offset along $y$ (mm)")
@@ -115,16 +110,16 @@ def _draw_interception(axes: Axes, found: EnvelopeStudy) -> None:
     axes.fill_between(
         f, [1e3 * t.amplitude for t in found.tracked], 1e-2, color=INSIDE["color"], alpha=0.12, linewidth=0.0
     )
-    axes.plot(f, [1e3 * t.limits["offset"] for t in found.tracked], **INSIDE)
+    axes.plot(f, [1e3 * t.limits["offset"] for t in found.tracked], label="offset", **INSIDE)
     names = [n for n in found.tracked[0].limits if n != "offset"]
     for name, color in zip(names, OTHERS, strict=True):
         axes.plot(f, [1e3 * t.limits[name] for t in found.tracked], color=color, linewidth=0.9, label=name)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_ylim(0.5, 3e4)
+    axes.set_ylim(0.5, 1e7)
     axes.set_xticks([0.3, 0.5, 1.0, 2.0], ["0.3", "0.5", "1", "2"])
     axes.set_xticks([], minor=True)
-    axes.legend(loc="upper right", fontsize=6.0, ncols=2)
+    axes.legend(loc="upper right", fontsize=6.5, ncols=2)
     axes.set_xlabel("frequency of the plate (Hz)")
     axes.set_ylabel("amplitude (mm)")
 
@@ -132,7 +127,8 @@ def _draw_interception(axes: Axes, found: EnvelopeStudy) -> None:
 def _draw_use(axes: Axes, found: EnvelopeStudy) -> None:
     rows = [m for m in found.margins if "lowest" not in m.threshold][::-1]
     use = [m.value / m.bound if m.bound > 0.0 else np.inf for m in rows]
-    names = [m.threshold.removeprefix("bounds.").rsplit("_", 1)[0].replace("_", " ") for m in rows]
+    words = [m.threshold.removeprefix("bounds.").rsplit("_", 1)[0].removesuffix(", highest") for m in rows]
+    names = [w.replace("_", "\n").replace(" ", "\n") for w in words]
     colors = [INSIDE["color"] if m.holds else BOX["edgecolor"] for m in rows]
     axes.barh(range(len(rows)), np.minimum(use, 2.5), color=colors, height=0.55, zorder=3.0)
     axes.axvline(1.0, color="black", linewidth=0.9, zorder=3.2)

@@ -62,7 +62,7 @@ def _thresholds(found: EnvelopeStudy) -> Table:
 
 def _bounds(found: EnvelopeStudy) -> Table:
     table = _table(
-        "Bounds, everything else as in flight", ("", "bound", "closed form", "flown at most", "what fails beyond")
+        "Bounds, everything else as in flight", ("", "bound", "closed form", "flown, worst", "what fails beyond")
     )
     for a in found.axes:
         unit = UNITS[a.name]
@@ -76,7 +76,7 @@ def _bounds(found: EnvelopeStudy) -> Table:
 
 def _interception(found: EnvelopeStudy) -> Table:
     table = _table(
-        "A plate that swings: largest amplitude the arm matches", ("frequency", "share missed", "amplitude", "cut by")
+        "Largest swing of the plate that the arm matches", ("frequency", "share missed", "amplitude", "cut by")
     )
     for t in found.tracked:
         table.add_row(f"{t.frequency:g} Hz", f"{t.missed:.2f}", f"{1e3 * t.amplitude:.3g} mm", t.limit)
