@@ -7,6 +7,7 @@ import typer
 
 from armland import __version__
 from armland.cli.detector import DETECTOR_EPILOG, detector
+from armland.cli.envelope import ENVELOPE_EPILOG, envelope
 from armland.cli.landing import LAND_EPILOG, TAKEOFF_EPILOG, land, takeoff
 from armland.cli.paper import GAINS_EPILOG, PAPER_EPILOG, VERIFY_EPILOG, gains, paper, verify
 from armland.errors import ArmlandError
@@ -60,6 +61,7 @@ app.command(epilog=VERIFY_EPILOG)(verify)
 app.command(epilog=GAINS_EPILOG)(gains)
 app.command(epilog=LAND_EPILOG)(land)
 app.command(epilog=TAKEOFF_EPILOG)(takeoff)
+app.command(epilog=ENVELOPE_EPILOG)(envelope)
 app.command(epilog=DETECTOR_EPILOG)(detector)
 
 

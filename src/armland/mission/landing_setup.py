@@ -21,6 +21,7 @@ from armland.mission.phases import Phase
 from armland.mission.takeoff_procedure import TAKEOFF
 from armland.mission.tracking_reach import check_tracking, out_of_reach
 from armland.models.arm import ArmModel
+from armland.models.capture import GATE_M, Grip, covered_offset, lateral_speed_bound
 from armland.models.parameters import arm_model
 from armland.models.workspace import check_path, home_poses
 from armland.rotations import Array, rotation_error
@@ -29,6 +30,11 @@ GRAVITY = 9.81
 
 UPRIGHT = np.eye(3)
 """End effector's orientation: pointing up, its x axis along the world's, so that the camera looks beside the UAV's nose."""
+
+BEYOND_M = 0.006
+"""How far beyond the plate's face the arm would close."""
+
+CLOSE_S = next(p.duration_s for p in LANDING if p.name == "close")
 
 POSITION = Wanted(30.0, 1.0)
 """Poles of the held UAV's position."""
@@ -67,6 +73,8 @@ def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "
         )
     mass = demonstrator.uav.mass_kg + landing.plate_mass_kg + landing.extra_mass_kg
     _check_weight(scenario, mass * GRAVITY)
+    if mission == "landing":
+        check_capture(landing, mass)
     phases = tuned(LANDING if mission == "landing" else TAKEOFF, landing, mass * GRAVITY)
     tick_s = 1.0 / demonstrator.run.rate_hz
     table = compile_table(phases, thresholds(landing), tick_s)
@@ -116,6 +124,34 @@ def _check_weight(scenario: LandingScenario, weight: float) -> None:
         )
     if problems:
         raise ConfigurationError("\n  ".join(problems))
+
+
+def check_capture(landing: Landing, mass: float) -> None:
+    """Refuse thresholds at which the closed forms exclude a capture of a UAV of `mass` kg whatever else is ideal.
+
+    Raises:
+        ConfigurationError: the magnet would not be covered, or the supervisor would have given up.
+    """
+    b, grip = landing.bounds, Grip(rated_force=landing.magnet_rating_n)
+    covered = covered_offset(grip)
+    if b.align_offset_m >= covered:
+        raise ConfigurationError(
+            f"bounds.align_offset_m = {b.align_offset_m:g} m lets the arm close where the plate does not cover the magnet; "
+            f"it must be below {covered:g} m, the plate's radius less that of the circle of pads"
+        )
+    # No approach of the mission is faster than the peak of its move: 35/16 of way over time.
+    fastest = 35.0 / 16.0 * (landing.place.standoff_m + BEYOND_M) / CLOSE_S + b.align_speed_mps
+    across = lateral_speed_bound(grip, mass, fastest, GATE_M)
+    if b.align_speed_mps >= across:
+        raise ConfigurationError(
+            f"bounds.align_speed_mps = {b.align_speed_mps:g} m/s carries the plate off the magnet before it grips; "
+            f"it must be below {across:.3f} m/s"
+        )
+    if b.align_tilt_deg >= landing.envelope.tilt_deg:
+        raise ConfigurationError(
+            f"bounds.align_tilt_deg = {b.align_tilt_deg:g} must be below envelope.tilt_deg = {landing.envelope.tilt_deg:g}, "
+            "where the UAV counts as out of control"
+        )
 
 
 def way_points(landing: Landing, mission: str) -> list[Array]:
@@ -238,7 +274,7 @@ def _parameters(
     p["range_margin"], p["range_stiffness"] = c.range_margin_rad, c.range_stiffness_nm
     p["q_min"], p["q_max"], p["tau_max"] = arm.q_min, arm.q_max, arm.tau_max
     p["qd_max"] = np.resize(landing.envelope.joint_speed_rad_s, arm.joints)
-    p["standoff"], p["beyond"] = landing.place.standoff_m, 0.006
+    p["standoff"], p["beyond"] = landing.place.standoff_m, BEYOND_M
     p["depth"] = landing.place.withdraw_m
     p["targets"] = _targets(landing, phases)
     p["track"], p["track_a"], p["coast"] = 12.0, 3.0, 0.06

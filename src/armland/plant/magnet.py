@@ -32,7 +32,11 @@ TOUCHING_M = 2e-5
 """Gap below which a pad counts as touching."""
 
 CUSHION_N = 1e-3
-"""Adhesion of a pad's contact; too small to hold anything."""
+"""Adhesion of a cushion's contact; too small to hold anything."""
+
+CUSHION_BELOW_M = 5e-5
+"""How far the cushions lie below the pads. They brake without friction: level with the pads they would let a plate that slides,
+which MuJoCo's contact lifts by micrometres, sink back so slowly that it slides on as if on ice."""
 
 HINGE = ("hinge_y", "hinge_x", "swivel")
 """The hinge's joints from the UAV to the plate: the plate's attitude in the body's is Ry Rx Rz of them."""
@@ -209,38 +213,42 @@ def hang_plate(body: mujoco.MjsBody, pivot: Array, p: HingePlate, degree: bool) 
 
 
 def mount_face(body: mujoco.MjsBody, height: float, magnet: Magnet, radius: float = 0.003) -> None:
-    """Put the face's pads, spheres of `radius` m, on `body` so that they touch the plane z = `height` of its frame."""
+    """Put the face's pads, spheres of `radius` m, on `body` so that they touch the plane z = `height` of its frame; and cushions."""
     for i in range(PADS):
         angle = 0.5 * np.pi * i
         x, y = magnet.pad_radius * np.cos(angle), magnet.pad_radius * np.sin(angle)
-        body.add_geom(
-            name=f"pad_{i + 1}",
-            type=mujoco.mjtGeom.mjGEOM_SPHERE,
-            size=[radius, 0, 0],
-            pos=[x, y, height - radius],
-            mass=0,
-            contype=0,
-            conaffinity=0,
-            group=3,
-        )
+        for name, below in (("pad", 0.0), ("cushion", CUSHION_BELOW_M)):
+            body.add_geom(
+                name=f"{name}_{i + 1}",
+                type=mujoco.mjtGeom.mjGEOM_SPHERE,
+                size=[radius, 0, 0],
+                pos=[x, y, height - below - radius],
+                mass=0,
+                contype=0,
+                conaffinity=0,
+                group=3,
+            )
 
 
 def couple(spec: mujoco.MjSpec, plate: str, magnet: Magnet) -> None:
-    """Contacts of the pads with the geom `plate`, a cylinder whose lower end is the face that is gripped."""
+    """Contacts of pads and cushions with the geom `plate`, a cylinder whose lower end is the face that is gripped."""
+    # As stiff as a step of 1 ms allows: the rating presses the faces together by less than 1 µm.
+    hard = {"solref": [max(0.002, 2.0 * spec.option.timestep), 1.0], "solimp": [0.9999, 0.9999, 0.001, 0.5, 2.0]}
+    friction = [magnet.shear_share, magnet.shear_share, 0.0, 0.0, 0.0]
     for i in range(PADS):
         spec.add_pair(
-            name=f"magnet_{i + 1}",
-            geomname1=f"pad_{i + 1}",
+            name=f"magnet_{i + 1}", geomname1=f"pad_{i + 1}", geomname2=plate, condim=3, friction=friction, **hard
+        )
+        # A hint of adhesion keeps the cushion's contact active over the reach: there it damps the snap of a light plate onto
+        # the face, which takes less than a step. It cannot do the pulling: MuJoCo drops a contact's friction under tension.
+        spec.add_pair(
+            name=f"cushion_{i + 1}",
+            geomname1=f"cushion_{i + 1}",
             geomname2=plate,
-            condim=3,
-            friction=[magnet.shear_share, magnet.shear_share, 0.0, 0.0, 0.0],
+            condim=1,
             gap=magnet.reach,
-            # A hint of adhesion keeps the contact active over the reach: there it damps the snap of a light plate onto the
-            # face, which takes less than a step. It cannot do the pulling: MuJoCo drops a contact's friction under tension.
             adhesion=CUSHION_N,
-            # As stiff as a step of 1 ms allows: the rating presses the faces together by less than 1 µm.
-            solref=[max(0.002, 2.0 * spec.option.timestep), 1.0],
-            solimp=[0.9999, 0.9999, 0.001, 0.5, 2.0],
+            **hard,
         )
 
 
