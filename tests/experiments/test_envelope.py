@@ -142,12 +142,12 @@ def test_captures_hold_with_all_thresholds_at_once():
 
 def test_what_lies_outside_is_named():
     found = small()
-    assert [m.threshold for m in found.margins if not m.holds] == ["bounds.lost_offset_m"]
-    assert not found.holds
-    assert "bounds.lost_offset_m = 0.015 m" in found.outside[0]
-    inside = replace(found, allowed=found.allowed._replace(lost=0.006))
-    assert inside.holds
-    assert inside.outside == []
+    assert found.holds
+    assert found.outside == []
+    late = replace(found, allowed=found.allowed._replace(lost=0.015))
+    assert [m.threshold for m in late.margins if not m.holds] == ["bounds.lost_offset_m"]
+    assert not late.holds
+    assert "bounds.lost_offset_m = 0.015 m" in late.outside[0]
     wide = replace(found, allowed=found.allowed._replace(offset=0.0065))
     assert "bounds.align_offset_m" in wide.outside[0]
 

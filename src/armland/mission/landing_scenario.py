@@ -119,7 +119,7 @@ class Bounds(Section):
     align_offset_m: Positive = Field(0.004, description="horizontal offset at which the arm closes")
     align_speed_mps: Positive = Field(0.06, description="relative speed at which the arm closes")
     align_tilt_deg: Positive = Field(6.0, description="tilt of the UAV at which the arm closes")
-    lost_offset_m: Positive = Field(0.015, description="offset at which closing is given up")
+    lost_offset_m: Positive = Field(0.006, description="offset at which closing is given up")
     pull_test_n: Positive = Field(0.8, description="pull of the rotors that tests the grip")
     pull_seen_n: Positive = Field(0.35, description="hinge force that proves it")
     share_carried: Positive = Field(0.3, description="share of the weight on the arm at which it carries")
