@@ -42,7 +42,10 @@ def test_a_threshold_outside_is_exit_code_1_and_named(monkeypatch, found, tmp_pa
     assert "bounds.align_offset_m = 0.008 m lies outside" in " ".join(done.stdout.split())
 
 
-@pytest.mark.parametrize(("text", "words"), [("title = 3", "title"), ("[bounds]\nalign_offset_m = 0.01\nlost_offset_m = 0.02", "0.007 m")])
+WIDE = "[bounds]\nalign_offset_m = 0.01\nlost_offset_m = 0.02"
+
+
+@pytest.mark.parametrize(("text", "words"), [("title = 3", "title"), (WIDE, "0.007 m")])
 def test_bad_input_is_refused_before_anything_is_written(tmp_path, text, words):
     file = tmp_path / "bad.toml"
     file.write_text(text)

@@ -139,7 +139,7 @@ def test_quaternion_of_a_rotation(turn):
         ({"bounds": {"pull_seen_n": 1.0}}, ConfigurationError, "pull_seen_n = 1 must be below"),
         ({"place": {"home_deg": [0.0, 1.0]}}, ConfigurationError, "home_deg has 2 values; the arm has 7 joints"),
         ({"wings": 2}, ConfigurationError, "wings"),
-        ({"bounds": {"align_offset_m": 0.0075}}, ConfigurationError, "it must be below 0.007 m"),
+        ({"bounds": {"align_offset_m": 0.0075, "lost_offset_m": 0.01}}, ConfigurationError, "it must be below 0.007 m"),
         ({"bounds": {"align_speed_mps": 0.5}}, ConfigurationError, "carries the plate off the magnet"),
         ({"bounds": {"align_tilt_deg": 30.0}}, ConfigurationError, "must be below envelope.tilt_deg = 30"),
     ],
