@@ -16,12 +16,14 @@ from armland.mission.bounds import thresholds, tuned
 from armland.mission.landing_procedure import LANDING
 from armland.mission.landing_scenario import Landing, LandingScenario
 from armland.mission.landing_state import parameters_layout
+from armland.mission.launch import Launch, plan_launch, pose, rotors_of, set_launch, timed
+from armland.mission.launch_procedure import gives_speed, takeoff_phases
 from armland.mission.phases import Phase, Table, compile_table
-from armland.mission.takeoff_procedure import TAKEOFF
 from armland.models.arm import ArmModel
+from armland.models.inflow import sustained
 from armland.models.parameters import arm_model
 from armland.models.workspace import check_path
-from armland.rotations import Array, rotation_error
+from armland.rotations import Array
 
 GRAVITY = 9.81
 
@@ -47,8 +49,13 @@ class Setup(NamedTuple):
     contact: NDArray[np.void]
 
 
-def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "landing") -> Setup:
+def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "landing", trial: bool = False) -> Setup:
     """Everything that a controller needs, checked.
+
+    Args:
+        scenario: of `landing_scenario`.
+        mission: landing or take-off.
+        trial: whether a UAV may be too heavy for its rotors: for a study that wants to see it fall.
 
     Raises:
         ConfigurationError: contradictory thresholds, a UAV too heavy for magnet, arm or rotors.
@@ -61,11 +68,16 @@ def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "
             f"place.home_deg has {len(landing.place.home_deg)} values; the arm has {arm.joints} joints"
         )
     mass = demonstrator.uav.mass_kg + landing.plate_mass_kg + landing.extra_mass_kg
-    _check_weight(scenario, mass * GRAVITY)
-    phases = tuned(LANDING if mission == "landing" else TAKEOFF, landing, mass * GRAVITY)
+    _check_weight(scenario, mission, mass * GRAVITY, trial)
+    phases = tuned(LANDING if mission == "landing" else takeoff_phases(landing), landing, mass * GRAVITY)
     tick_s = 1.0 / demonstrator.run.rate_hz
     table = compile_table(phases, thresholds(landing), tick_s)
     home = _survey(arm, scenario, mission, mass * GRAVITY)
+    launch: Launch | None = None
+    if mission == "takeoff" and gives_speed(landing):
+        launch = plan_launch(arm, home, landing, mass)
+        phases = timed(phases, launch)
+        table = compile_table(phases, thresholds(landing), tick_s)
     eye = landing.eye
     seen = PoseFilter(
         mass=mass,
@@ -86,14 +98,14 @@ def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "
         home,
         phases,
         table,
-        _parameters(scenario, arm, mission, phases, mass),
+        _parameters(scenario, arm, mission, phases, mass, launch),
         pose_filter_parameters(seen, tick_s),
         wrench_parameters(wrench, tick_s),
         contact_parameters(contact, tick_s),
     )
 
 
-def _check_weight(scenario: LandingScenario, weight: float) -> None:
+def _check_weight(scenario: LandingScenario, mission: str, weight: float, trial: bool) -> None:
     landing, rotors = scenario.landing, scenario.demonstrator.rotors
     held = landing.envelope.hinge_force_share * landing.magnet_rating_n
     if weight > held:
@@ -102,6 +114,15 @@ def _check_weight(scenario: LandingScenario, weight: float) -> None:
             f"{landing.envelope.hinge_force_share:g} of its rating of {landing.magnet_rating_n:g} N: "
             f"at most {held / GRAVITY:.2f} kg can be held"
         )
+    if mission == "takeoff" and landing.place.fly_on:
+        speed = float(np.hypot(*landing.place.takeoff_velocity_mps[:2]))
+        lift = sustained(rotors_of(landing, scenario.demonstrator), speed, landing.rotors.drag_nspm)
+        if weight > lift and not trial:
+            raise ConfigurationError(
+                f"the UAV weighs {weight:.3f} N; at {speed:.2f} m/s its rotors carry {lift:.3f} N: at most "
+                f"{lift / GRAVITY:.4f} kg can fly on at that speed"
+            )
+        return
     lift = 0.9 * 4.0 * rotors.max_thrust_n
     if weight > lift:
         raise ConfigurationError(
@@ -116,6 +137,8 @@ def way_points(landing: Landing, mission: str) -> list[Array]:
     catch, down = np.array(place.catch_m), np.array(place.put_down_m)
     e = np.array([0.0, 0.0, 1.0])
     wait, above = catch - place.wait_below_m * e, down + place.above_m * e
+    if mission == "takeoff" and gives_speed(landing):
+        return [down - place.withdraw_m * e, down, above, np.array(place.launch_m)]
     if mission == "takeoff":
         return [down - place.withdraw_m * e, down, above, catch, catch - place.withdraw_m * e]
     return [wait, catch, above, down, down - place.withdraw_m * e]
@@ -136,7 +159,7 @@ def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: floa
     lead = np.linspace(arm.position.copy(), points[0], 25)
     q = near
     for point in lead:
-        q = _solve(arm, q, point)
+        q = pose(arm, q, point)
     fine = np.concatenate([np.linspace(a, b, 20) for a, b in pairwise(points)])
     try:
         check_path(arm, q, UPRIGHT, fine, np.arange(len(fine), dtype=float))
@@ -153,7 +176,7 @@ def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: floa
 
 def _check_torque(arm: ArmModel, q: Array, points: Array, weight: float) -> None:
     for point in points[::4]:
-        q = _solve(arm, q, point)
+        q = pose(arm, q, point)
         # Half again as much as at rest, for what it takes to move it.
         needed = np.abs(arm.gravity + 1.5 * weight * arm.jacobian[2])
         worst = int((needed / arm.tau_max).argmax())
@@ -162,17 +185,6 @@ def _check_torque(arm: ArmModel, q: Array, points: Array, weight: float) -> None
                 f"joint {arm.joint_names[worst]} would need {needed[worst]:.0f} N·m to carry a UAV of {weight:.1f} N at "
                 f"({', '.join(f'{x:.2f}' for x in point)}) m; 0.9 of its limit is {0.9 * arm.tau_max[worst]:.0f} N·m"
             )
-
-
-def _solve(arm: ArmModel, q: Array, point: Array) -> Array:
-    for _ in range(30):
-        arm.update(q, np.zeros(arm.joints))
-        e = np.concatenate([point - arm.position, rotation_error(arm.rotation.copy(), UPRIGHT)])
-        if np.abs(e).max() < 1e-8:
-            break
-        J = arm.jacobian
-        q = np.clip(q + J.T @ np.linalg.solve(J @ J.T + 1e-8 * np.eye(6), e), arm.q_min, arm.q_max)
-    return q
 
 
 def _targets(landing: Landing, phases: tuple[Phase, ...]) -> Array:
@@ -192,7 +204,12 @@ def _targets(landing: Landing, phases: tuple[Phase, ...]) -> Array:
 
 
 def _parameters(
-    scenario: LandingScenario, arm: ArmModel, mission: str, phases: tuple[Phase, ...], mass: float
+    scenario: LandingScenario,
+    arm: ArmModel,
+    mission: str,
+    phases: tuple[Phase, ...],
+    mass: float,
+    launch: Launch | None,
 ) -> NDArray[np.void]:
     landing, d = scenario.landing, scenario.demonstrator
     p = np.zeros(1, parameters_layout(arm.joints, len(phases)))
@@ -224,7 +241,9 @@ def _parameters(
     p["targets"] = _targets(landing, phases)
     p["track"], p["track_a"], p["coast"] = 12.0, 3.0, 0.06
     p["admittance"], p["admittance_max"] = 3e-3, 4e-3
-    p["camera"] = landing.eye.camera_m
+    p["camera"], p["drag"] = landing.eye.camera_m, landing.rotors.drag_nspm
+    if launch is not None:
+        set_launch(p, launch, landing, d, [phase.name for phase in phases])
     _supervisor(p, landing, rate)
     return p
 
