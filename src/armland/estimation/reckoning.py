@@ -7,8 +7,8 @@
 | f_T, m, g | `thrust`, `mass`, `gravity` | N, kg, m/s² |
 | a | acceleration of the centre of mass by the thrust model | m/s², world |
 
-a = (f_T/m) R_wb e₃ − g e₃ (P.1), plus `memory.push`. An attitude is written back to the tick at which the UAV took it, and carried on with its
-rates from there to the present; where it is older than `hold` it is held, and the acceleration counts as guessed. Without a
+a = (f_T/m) R_wb e₃ − g e₃ (P.1), plus `memory.push`. An attitude is written back to the tick at which the UAV took it, and carried on
+with its rates from there to the present; where it is older than `hold` it is held, and the acceleration counts as guessed. Without a
 thrust model (`driven` = 0) a = 0, and the acceleration bias of `late_fusion` is the whole acceleration.
 
 Assumption: an attitude that arrives after a camera sample of a later tick has been fused improves only what comes after

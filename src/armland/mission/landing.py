@@ -16,7 +16,7 @@ from armland.mission.landing_arm import (
     track,
 )
 from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, screened, tilt_of
-from armland.mission.landing_uav import AUTONOMOUS, CRUISE, LEVEL, STATION, command_uav, thrust_in_force
+from armland.mission.landing_uav import AUTONOMOUS, BALANCE, CRUISE, LEVEL, STATION, command_uav, thrust_in_force
 from armland.mission.phases import MAGNET, SIGNAL, SIGNALS, next_phase
 from armland.mission.supervisor import find_fault, limit
 from armland.records import Record
@@ -119,6 +119,9 @@ def load_expected(phase: Record, elapsed: float, e: Record, p: Record, s: Record
     """Vertical hinge force, N, that load and thrust explain, where they do; else NaN."""
     if phase.free:
         return 0.0 if elapsed > 1.0 else np.nan
+    if phase.uav == BALANCE:
+        # What carries the weight is being found out: until then it is the thrust that was asked for.
+        return float(p.weight - e.thrust)
     if phase.held and phase.observe:
         return float(p.weight * (1.0 - e.thrust / max(s.hover, 1e-3)))
     return np.nan

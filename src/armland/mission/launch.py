@@ -81,15 +81,24 @@ def plan_launch(arm: ArmModel, q: Array, landing: Landing, mass: float) -> Launc
     if isinstance(found, Launch):
         return found
     speed = float(np.linalg.norm(velocity))
-    low, high = 0.0, speed
-    for _ in range(6):
-        middle = 0.5 * (low + high)
-        possible = isinstance(_search(arm, q, landing, mass, velocity * (middle / speed)), Launch)
-        low, high = (middle, high) if possible else (low, middle)
+    low = largest_speed(arm, q, landing, mass, velocity / speed, speed)
     raise ConfigurationError(
         f"place.takeoff_velocity_mps = {_text(velocity)}: the arm cannot give {speed:.2f} m/s through place.launch_m = "
         f"{_text(np.array(landing.place.launch_m))}: {found.text}; in that direction it can give about {low:.2f} m/s"
     )
+
+
+def largest_speed(
+    arm: ArmModel, q: Array, landing: Landing, mass: float, direction: Array, below: float = 1.5
+) -> float:
+    """Largest speed, m/s, below `below` that the arm can give along the unit vector `direction` (3,); other arguments as above."""
+    q = _led(arm, q, np.array(landing.place.launch_m))
+    low, high = 0.0, below
+    for _ in range(7):
+        middle = 0.5 * (low + high)
+        possible = isinstance(_search(arm, q, landing, mass, middle * direction), Launch)
+        low, high = (middle, high) if possible else (low, middle)
+    return low
 
 
 def _search(arm: ArmModel, q: Array, landing: Landing, mass: float, velocity: Array) -> Launch | _Refusal:

@@ -40,7 +40,6 @@ LAUNCH = (
         magnet="on",
         held=True,
         link="held",
-        observe=True,
         on_timeout="holding",
         guards=(G("release", (C("progress", ">", "almost_one"), C("hinge_force", "<", "force_launched_n")), 0.03),),
     ),

@@ -109,10 +109,10 @@ def factor_at_power(static: float, in_plane: float, axial: float, disc: float) -
         f = w * s * (w + c) - 1.0
         low, high = (w, high) if f < 0.0 else (low, w)
         step = f / ((s + w * (w + c) / s) * (w + c) + w * s)
-        new = w - step
-        w = new if low < new < high else 0.5 * (low + high)
         if abs(step) < 1e-12:
             break
+        new = w - step
+        w = new if low < new < high else 0.5 * (low + high)
     return float(1.0 / (w + c))  # (I.3)
 
 
