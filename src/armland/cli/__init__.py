@@ -8,6 +8,7 @@ import typer
 from armland import __version__
 from armland.cli.landing import LAND_EPILOG, detector, land, takeoff
 from armland.cli.paper import GAINS_EPILOG, PAPER_EPILOG, VERIFY_EPILOG, gains, paper, verify
+from armland.cli.takeoff_study import TAKEOFF_WEIGHT_EPILOG, takeoff_weight
 from armland.errors import ArmlandError
 
 app = typer.Typer(
@@ -49,6 +50,7 @@ app.command(epilog=GAINS_EPILOG)(gains)
 app.command(epilog=LAND_EPILOG)(land)
 app.command(epilog=LAND_EPILOG.replace("land", "takeoff"))(takeoff)
 app.command()(detector)
+app.command(epilog=TAKEOFF_WEIGHT_EPILOG)(takeoff_weight)
 
 
 def main() -> None:
