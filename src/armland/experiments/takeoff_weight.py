@@ -22,8 +22,13 @@ from armland.plant.landing import LandingPlant
 
 DIRECTIONS = {"forward": (1.0, 0.0, 0.0), "sideways": (0.0, -1.0, 0.0), "upwards": (0.0, 0.0, 1.0)}
 
-FLOWN = (("rest", "forward", 0.0), ("sideways", "sideways", 0.3), ("sideways", "sideways", 0.6))
-FLOWN += (("forward", "forward", 0.5), ("upwards", "upwards", 0.5))
+FLOWN = (
+    ("rest", "forward", 0.0),
+    ("sideways", "sideways", 0.3),
+    ("sideways", "sideways", 0.6),
+    ("forward", "forward", 0.5),
+    ("upwards", "upwards", 0.5),
+)
 """Name, direction and speed, m/s, of the flights."""
 
 BRACKET, HALVINGS = 0.008, 5

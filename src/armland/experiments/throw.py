@@ -110,7 +110,7 @@ def heaviest_thrown(
     """
     r = rotors
     found = [
-        _heaviest(speed, e, height, TILTS, TARGETS, drag, power, r.count, r.static, r.disc, r.slope, r.advance)
+        _heaviest(speed, e, height, TILTS, TARGETS, drag, power, r.number, r.static, r.disc, r.slope, r.advance)
         for e in (ELEVATIONS if speed > 0.0 else ELEVATIONS[:1])
     ]
     best = int(np.argmax(found))
@@ -120,9 +120,9 @@ def heaviest_thrown(
 def heaviest_at_any_speed(rotors: Rotors, drag: float, power: bool = False) -> tuple[float, float]:
     """Largest weight over the static thrust that flies level, and the speed at which it does, m/s."""
     speeds = np.linspace(0.0, 20.0, 401)
-    one = rotors.static / rotors.count
+    one = rotors.static / rotors.number
     share = [
-        level_flight(v, drag / rotors.count, power, one, rotors.disc, rotors.slope, rotors.advance) for v in speeds
+        level_flight(v, drag / rotors.number, power, one, rotors.disc, rotors.slope, rotors.advance) for v in speeds
     ]
     best = int(np.argmax(share))
     return float(share[best]), float(speeds[best])
@@ -131,8 +131,8 @@ def heaviest_at_any_speed(rotors: Rotors, drag: float, power: bool = False) -> t
 def speed_for_gain(rotors: Rotors, gain: float, drag: float, power: bool = False) -> float | None:
     """Smallest speed, m/s, at which the rotors carry 1 + `gain` times their static thrust in level flight; None: at none."""
     speeds = np.linspace(0.0, 40.0, 4001)
-    one = rotors.static / rotors.count
+    one = rotors.static / rotors.number
     for v in speeds:
-        if level_flight(v, drag / rotors.count, power, one, rotors.disc, rotors.slope, rotors.advance) >= 1.0 + gain:
+        if level_flight(v, drag / rotors.number, power, one, rotors.disc, rotors.slope, rotors.advance) >= 1.0 + gain:
             return float(v)
     return None

@@ -205,7 +205,7 @@ def pose(arm: ArmModel, q: Array, point: Array) -> Array:
     return q
 
 
-def _torques(arm: ArmModel, qs: Array, rate: Array, times: Array, points: Array, masses: Array) -> Array:
+def _torques(arm: ArmModel, qs: Array, rate: Array, times: Array, points: Array, masses: NDArray) -> Array:
     # Largest of each joint, (n,), by the arm's model and the mass that it carries at each time.
     second = np.gradient(rate, times, axis=0)
     push = np.gradient(np.gradient(points, times, axis=0), times, axis=0) + np.array([0.0, 0.0, GRAVITY])

@@ -31,7 +31,7 @@ SLOWEST = -0.5
 class Rotors(NamedTuple):
     """Equal rotors as (I.1) to (I.3) see them."""
 
-    count: int
+    number: int
     static: float
     """Largest thrust of all rotors together at rest, N."""
     disc: float
@@ -44,7 +44,7 @@ class Rotors(NamedTuple):
     @property
     def hover_inflow(self) -> float:
         """v_h at the largest static thrust, m/s."""
-        return float(np.sqrt(self.static / (self.count * self.disc)))
+        return float(np.sqrt(self.static / (self.number * self.disc)))
 
 
 def disc_of(radius: float, density: float) -> float:
@@ -67,8 +67,7 @@ def induced(thrust: float, in_plane: float, axial: float, disc: float) -> float:
     for _ in range(50):
         s = np.sqrt(x * x + (w + c) * (w + c))
         step = (w * s - 1.0) / (s + w * (w + c) / s)
-        # Never to the other branch, where the air flows upwards.
-        w = max(w - step, 0.5 * (w - min(c, 0.0)), 1e-12)
+        w = max(w - step, 0.1 * w)
         if abs(step) < 1e-12:
             break
     return float(w * v_h)
@@ -88,7 +87,7 @@ def factor_at_speed(static: float, in_plane: float, axial: float, disc: float, s
     for _ in range(50):
         s = np.sqrt(x * x + (w + c) * (w + c)) + 1e-300
         step = (w * s + slope * w - most) / (s + w * (w + c) / s + slope)
-        w = max(w - step, 0.5 * (w - min(c, 0.0)), 0.0)
+        w = max(w - step, 0.1 * w)
         if abs(step) < 1e-9:
             break
     return float(max(most - slope * w, 0.0))  # (I.2)
@@ -158,8 +157,8 @@ def level_flight(
 
 def sustained(rotors: Rotors, speed: float, drag: float, power: bool = False) -> float:
     """Largest weight, N, that flies level at `speed` m/s against a linear drag of `drag` N·s/m, by (I.2) or at constant power."""
-    one = rotors.static / rotors.count
-    share = level_flight(speed, drag / rotors.count, power, one, rotors.disc, rotors.slope, rotors.advance)
+    one = rotors.static / rotors.number
+    share = level_flight(speed, drag / rotors.number, power, one, rotors.disc, rotors.slope, rotors.advance)
     return share * rotors.static
 
 

@@ -238,10 +238,10 @@ def couple(spec: mujoco.MjSpec, plate: str, magnet: Magnet) -> None:
             # A hint of adhesion keeps the contact active over the reach: there it damps the snap of a light plate onto the
             # face, which takes less than a step. It cannot do the pulling: MuJoCo drops a contact's friction under tension.
             adhesion=CUSHION_N,
-            # The rating presses the faces together by 1 µm. Stiffer, it would be less than what a step's curved way opens at
-            # 0.2 m/s, 0.1 µm: an open contact has no friction in MuJoCo, and the plate would slide off a magnet that holds it.
+            # The rating presses the faces together by 0.3 µm. The last of it is softer: on a curved way each step opens the
+            # contact a little, 0.1 µm at 0.2 m/s, and MuJoCo drops the friction of a contact that is open, by however little.
             solref=[max(0.002, 2.0 * spec.option.timestep), 1.0],
-            solimp=[0.998, 0.9999, 6e-7, 0.5, 2.0],
+            solimp=[0.998, 0.9999, 3e-7, 0.5, 2.0],
         )
 
 

@@ -20,7 +20,7 @@ from armland.mission.launch import rotors_of
 from armland.models.inflow import Rotors, sustained
 from armland.view.canvas import PAGE_IN, paper_style, save, sheet
 
-READINGS = (("constant speed", False, "#0072B2"), ("constant power", True, "#D55E00"))
+READINGS = (("constant rotor speed", False, "#0072B2"), ("constant power", True, "#D55E00"))
 MARKS = {"rest": "o", "sideways": "s", "forward": "D", "upwards": "^"}
 
 
@@ -56,13 +56,14 @@ def takeoff_weight_figure(found: TakeoffWeight, scenario: LandingScenario) -> Fi
     far.set_ylim(-1.0, 24.0)
     far.set_title("kept, at any speed")
     for axes in (near, far):
-        axes.axvspan(0.0, fastest, color="0.945", linewidth=0.0, zorder=0.0)
+        axes.axvspan(-1.0, fastest, color="0.945", linewidth=0.0, zorder=0.0)
     _draw_thrown(thrown, rotors, drag, 1.5)
     thrown.axvspan(0.0, min(found.arm_speed_mps.values()), color="0.945", linewidth=0.0, zorder=0.0)
     for axes in (near, far, thrown):
         axes.set_xlabel("speed given (m/s)")
-        axes.set_xlim(left=0.0)
-        axes.legend(fontsize=6.0, loc="upper left")
+        axes.set_xlim(left=-0.02 if axes is near else 0.0)
+        if axes is not far:
+            axes.legend(fontsize=6.0, loc="upper left")
     near.set_ylabel("gain of take-off weight (%)")
     return figure
 
