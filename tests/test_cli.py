@@ -210,3 +210,19 @@ def test_verify_refuses_bad_input(args: tuple[str, ...], tmp_path: Path) -> None
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_takeoff_weight_by_theory_alone(tmp_path: Path) -> None:
+    done = armland("takeoff-weight", "--no-flights", "--json", "--no-figures", "--out", str(tmp_path / "out"))
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    assert {"arm_speed_mps", "sustained", "thrown", "speed_for_gain", "flights", "verdict"} <= set(result)
+    assert json.loads((tmp_path / "out" / "takeoff_weight.json").read_text()) == result
+
+
+def test_takeoff_weight_refuses_bad_input(tmp_path: Path) -> None:
+    (tmp_path / "far.toml").write_text("[place]\nlaunch_m = [1.5, 0.0, 0.9]\n")
+    done = armland("takeoff-weight", "far.toml", "--no-flights", cwd=tmp_path)
+    assert done.returncode == 2, done.stderr
+    assert "out of reach" in done.stderr
+    assert "Traceback" not in done.stderr

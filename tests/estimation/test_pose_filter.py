@@ -414,3 +414,16 @@ def _best(call, times=20):
         call()
         costs.append(perf_counter() - begin)
     return min(costs)
+
+
+def test_a_push_that_the_caller_knows_of_is_part_of_the_model():
+    # A UAV that an arm accelerates: told of it, the estimate does not lag.
+    apart = {}
+    for told in (True, False):
+        p, s = pose_filter_parameters(PoseFilter(mass=MASS), 1e-3), np.zeros(1, MEMORY)
+        level, still = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+        s["push"][0, :, 0] = 2.0 if told else 0.0
+        for k in range(100):
+            advance(k, k, level, still, MASS * GRAVITY, still, level, p, s)
+        apart[told] = s["track"]["velocity"][0][99 % len(s["track"]["velocity"][0]), 0]
+    assert apart[True] - apart[False] == pytest.approx(2.0 * 0.1, rel=0.02)

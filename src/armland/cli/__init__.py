@@ -10,6 +10,7 @@ from armland.cli.detector import DETECTOR_EPILOG, detector
 from armland.cli.envelope import ENVELOPE_EPILOG, envelope
 from armland.cli.landing import LAND_EPILOG, TAKEOFF_EPILOG, land, takeoff
 from armland.cli.paper import GAINS_EPILOG, PAPER_EPILOG, VERIFY_EPILOG, gains, paper, verify
+from armland.cli.takeoff_study import TAKEOFF_WEIGHT_EPILOG, takeoff_weight
 from armland.errors import ArmlandError
 
 app = typer.Typer(
@@ -63,6 +64,7 @@ app.command(epilog=LAND_EPILOG)(land)
 app.command(epilog=TAKEOFF_EPILOG)(takeoff)
 app.command(epilog=ENVELOPE_EPILOG)(envelope)
 app.command(epilog=DETECTOR_EPILOG)(detector)
+app.command(epilog=TAKEOFF_WEIGHT_EPILOG)(takeoff_weight)
 
 
 def main() -> None:

@@ -40,6 +40,7 @@ MEMORY = np.dtype(
         ("track", TRACK),
         ("quat", "f8", (RING, 4)),  # q_imu, carried on where no sample has come yet
         ("thrust", "f8", (RING,)),  # N
+        ("push", "f8", (RING, 3)),  # m/s², world: what else is known to accelerate it, written by the caller
         ("camera_position", "f8", (RING, 3)),  # m, world
         ("camera_quat", "f8", (RING, 4)),  # world<-camera
         ("first_tick", "i8"),

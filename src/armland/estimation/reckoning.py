@@ -7,8 +7,8 @@
 | f_T, m, g | `thrust`, `mass`, `gravity` | N, kg, m/s² |
 | a | acceleration of the centre of mass by the thrust model | m/s², world |
 
-a = (f_T/m) R_wb e₃ − g e₃ (P.1). An attitude is written back to the tick at which the UAV took it, and carried on with its
-rates from there to the present; where it is older than `hold` it is held, and the acceleration counts as guessed. Without a
+a = (f_T/m) R_wb e₃ − g e₃ (P.1), plus `memory.push`. An attitude is written back to the tick at which the UAV took it, and carried on
+with its rates from there to the present; where it is older than `hold` it is held, and the acceleration counts as guessed. Without a
 thrust model (`driven` = 0) a = 0, and the acceleration bias of `late_fusion` is the whole acceleration.
 
 Assumption: an attitude that arrives after a camera sample of a later tick has been fused improves only what comes after
@@ -92,7 +92,8 @@ def _reckon_from(start: int, tick: int, q: Array, p: Record, s: Record) -> None:
         for i in range(4):
             s.quat[k % RING, i] = q[i]
         guessed = p.driven == 1 and k - s.imu_tick > p.hold
-        reckon(s.track, k, _model_acceleration(q, R_align, s.thrust[k % RING], p), guessed, p.tick_s)
+        a = _model_acceleration(q, R_align, s.thrust[k % RING], p) + s.push[k % RING]
+        reckon(s.track, k, a, guessed, p.tick_s)
 
 
 @njit(cache=True)

@@ -87,11 +87,15 @@ def judge_takeoff(records: NDArray[np.void], setup: Setup, put_down: Array, rate
     if free is None:
         why.append("the magnet never let go of a flying UAV")
     else:
-        force = float(np.linalg.norm(truth["hinge_force"][max(free - 300, 0)]))
+        force = float(np.linalg.norm(truth["hinge_force"][_let_go(records, setup, free)]))
         speed = float(np.linalg.norm(truth["v"][free]))
         drop = float(truth["r"][free, 2] - truth["r"][free : free + 2 * rate, 2].min())
         release = {"hinge_force_n": force, "speed_mps": speed, "drop_m": drop}
         late = truth[-rate // 2 :]
+        # A UAV that keeps the speed it was given flies steadily at that speed.
+        given = np.array(setup.scenario.landing.place.takeoff_velocity_mps)[:2] * setup.scenario.landing.place.fly_on
+        late = late.copy()
+        late["v"][:, :2] -= given
         if np.linalg.norm(late["v"], axis=1).max() > FLYING_SPEED_MPS or tilt_deg(late["quat"]).max() > FLYING_TILT_DEG:
             why.append("the UAV does not fly steadily at the end")
     if violated:
@@ -126,7 +130,7 @@ def _judgement(
         fault=FAULTS[int(records["mission"]["fault"][-1])],
         end=_end(records, setup),
         release=release,
-        state=safe_end(records, rate),
+        state=safe_end(records, rate, FLYING_SPEED_MPS + _given_speed(setup)),
     )
 
 
@@ -156,7 +160,12 @@ def limits_violated(records: NDArray[np.void], setup: Setup) -> list[str]:
     return [name for name, is_so in exceeded.items() if is_so]
 
 
-def safe_end(records: NDArray[np.void], rate: int) -> str:
+def _given_speed(setup: Setup) -> float:
+    place = setup.scenario.landing.place
+    return float(np.linalg.norm(place.takeoff_velocity_mps)) if place.fly_on else 0.0
+
+
+def safe_end(records: NDArray[np.void], rate: int, speed: float = 0.0) -> str:
     """How the UAV ended: `flying`, `held`, `standing`, or, where it is none of these or fell on its way, `lost`."""
     truth = records["truth"]
     late = truth[-rate // 4 :]
@@ -171,7 +180,7 @@ def safe_end(records: NDArray[np.void], rate: int) -> str:
         return "held"
     if (
         late["r"][:, 2].min() > 0.6
-        and np.linalg.norm(late["v"], axis=1).max() < 0.6
+        and np.linalg.norm(late["v"], axis=1).max() < max(speed, 0.6)
         and tilt_deg(late["quat"]).max() < 25.0
     ):
         return "flying"
@@ -228,6 +237,12 @@ def _touchdown(truth: NDArray[np.void], put_down: Array) -> dict[str, float | No
         "tilt_deg": float(tilt_deg(truth["quat"][before])),
         "offset_m": float(np.hypot(apart[0], apart[1])),
     }
+
+
+def _let_go(records: NDArray[np.void], setup: Setup, free: int) -> int:
+    # Tick at which the magnet was switched off for the release at `free`.
+    before = records["mission"]["phase"][:free] != setup.table.number("release")
+    return int(np.flatnonzero(before)[-1])
 
 
 def _released(truth: NDArray[np.void]) -> int | None:

@@ -1,6 +1,7 @@
 """The thresholds that the procedures name, and the shares of the weight that a scenario wants."""
 
 from armland.mission.landing_scenario import Landing
+from armland.mission.launch_procedure import CURRENT_GONE_S, FLOWN_S
 from armland.mission.phases import Phase
 
 
@@ -28,6 +29,10 @@ def thresholds(landing: Landing) -> dict[str, float]:
         "rotors_off_n": 0.3,
         "arm_error_m": 0.005,
         "coil_off_s": 0.2,
+        "force_light_n": 0.15,
+        "force_launched_n": 0.6,
+        "current_gone_s": CURRENT_GONE_S,
+        "flown_s": FLOWN_S,
         "retreat_m": 0.8 * landing.place.withdraw_m,
         "retries_allowed": landing.bounds.retries + 0.5,
     }

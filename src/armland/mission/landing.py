@@ -4,9 +4,19 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from armland.mission.landing_arm import BRAKE, JOIN, arm_torque, begin_reference, held_force, refer, track
+from armland.mission.landing_arm import (
+    BRAKE,
+    JOIN,
+    LAUNCH,
+    LEAVE,
+    arm_torque,
+    begin_reference,
+    held_force,
+    refer,
+    track,
+)
 from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, tilt_of
-from armland.mission.landing_uav import AUTONOMOUS, LEVEL, STATION, command_uav, thrust_in_force
+from armland.mission.landing_uav import AUTONOMOUS, BALANCE, CRUISE, LEVEL, STATION, command_uav, thrust_in_force
 from armland.mission.phase_table import next_phase
 from armland.mission.phases import MAGNET, SIGNAL, SIGNALS
 from armland.mission.supervisor import find_fault, limit
@@ -110,9 +120,24 @@ def load_expected(phase: Record, elapsed: float, e: Record, p: Record, s: Record
     """Vertical hinge force, N, that load and thrust explain, where they do; else NaN."""
     if phase.free:
         return 0.0 if elapsed > 1.0 else np.nan
+    if phase.uav == BALANCE:
+        # What carries the weight is being found out: until then it is the thrust that was asked for.
+        return float(p.weight - e.thrust)
     if phase.held and phase.observe:
         return float(p.weight * (1.0 - e.thrust / max(s.hover, 1e-3)))
     return np.nan
+
+
+@njit(cache=True)
+def known_push(arm: int, held: bool, r: Record, p: Record) -> Array:
+    """Acceleration (3,) of the UAV, m/s², world, that neither its thrust nor its weight make: by the arm that gives it a speed, and
+    by the drag at that speed."""
+    out = np.zeros(3)
+    if arm in (LAUNCH, LEAVE):
+        for i in range(3):
+            drag = p.drag / p.mass if i < 2 else 0.0
+            out[i] = r.a[i] - drag * r.v[i] if held else -drag * p.launch[i]
+    return out
 
 
 @njit(cache=True)
@@ -175,9 +200,10 @@ def landing_tick(
     e.thrust = thrust_in_force(now, p, s)
     estimate_arm(m, arm, e)
     # Where arm or cradle carry, they take what the rotors leave: nothing accelerates much.
-    flies = row.uav == AUTONOMOUS or row.uav == STATION or row.uav == LEVEL
+    flies = row.uav == AUTONOMOUS or row.uav == STATION or row.uav == LEVEL or row.uav == CRUISE
     lift = e.thrust * p.weight / max(s.hover, 1e-3) if flies else p.weight
-    estimate_plate(m, arm, p.camera.copy(), lift, sample, filter_p, filter_s, plate, e)
+    push = known_push(row.arm, held, t.reference, p)
+    estimate_plate(m, arm, p.camera.copy(), lift, push, sample, filter_p, filter_s, plate, e)
     s.seen = 1 if e.plate_valid else s.seen
     way = signals[S_RETREAT]
     estimate_load(

@@ -16,12 +16,13 @@ from numba import njit
 
 from armland.control.exact import ExactGains, Reference, UavParameters, exact_law
 from armland.control.impedance import elbow_field, orientation_pd, range_field
+from armland.mission.launch_reference import leave, run_up
 from armland.mission.phases import ARM
 from armland.models.operational import null_space_torque
 from armland.records import Record
 from armland.rotations import cross, matrix
 
-HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, BRAKE = range(len(ARM))
+HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, BRAKE, LAUNCH, LEAVE = range(len(ARM))
 
 GRAVITY = 9.81
 
@@ -84,6 +85,19 @@ def refer(mode: int, elapsed: float, duration: float, phase: int, e: Record, p: 
             r.r[i] = s.p[i] - down * (p.standoff - b * reach)
             r.v[i] = s.pv[i] + down * b_dot * reach
             r.a[i] = s.pa[i] + down * b_ddot * reach
+        elif mode == LAUNCH:
+            # The way that lies before the run-up's begin has its speed already.
+            way, speed, rise = run_up(elapsed, p.launch_s)
+            more = p.launch[i] - s.v0[i]
+            r.r[i] = s.r0[i] + s.v0[i] * elapsed + more * way
+            r.v[i] = s.v0[i] + more * speed
+            r.a[i] = more * rise
+        elif mode == LEAVE:
+            way, speed, rise = leave(elapsed, p.launch_s, p.leave_s)
+            b, b_dot, b_ddot = septic(elapsed / p.leave_s, p.leave_s)
+            r.r[i] = s.r0[i] + s.v0[i] * way - down * b * p.depth
+            r.v[i] = s.v0[i] * speed - down * b_dot * p.depth
+            r.a[i] = s.v0[i] * rise - down * b_ddot * p.depth
         else:
             # What speed there was runs out over `coast`, so that the reference never jumps.
             way = 0.0

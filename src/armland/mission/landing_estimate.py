@@ -12,6 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from armland.estimation.contact import detect
+from armland.estimation.late_fusion import RING
 from armland.estimation.pose_filter import fuse, predict
 from armland.estimation.reckoning import advance
 from armland.estimation.wrench import compensate
@@ -57,6 +58,7 @@ def estimate_plate(
     arm: Record,
     camera: Array,
     lift: float,
+    push: Array,
     sample_: NDArray[np.void],
     filter_p: NDArray[np.void],
     filter_s: NDArray[np.void],
@@ -70,12 +72,15 @@ def estimate_plate(
         arm: arm model's state.
         camera: optical centre (3,), m, end effector frame.
         lift: force that lifts the UAV along its z, N: rotors and, where it is held, the hinge.
+        push: (3,), m/s², world: what else is known to accelerate it.
         sample_: (1,) of `pose_filter.fuse`'s sample, overwritten.
         filter_p: the filter's parameters (1,).
         filter_s: its memory (1,).
         plate_: its output (1,).
         e: estimate, written.
     """
+    for i in range(3):
+        filter_s[0].push[m.tick % RING, i] = push[i]
     R = arm.rotation.copy()
     eye = arm.position.copy() + R @ camera
     advance(m.tick, m.uav_tick, m.uav_quat.copy(), m.uav_rate.copy(), lift, eye, quaternion_of(R), filter_p, filter_s)

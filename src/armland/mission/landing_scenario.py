@@ -68,12 +68,38 @@ class Place(Section):
     standoff_m: Positive = Field(0.03, description="gap from which the arm closes")
     above_m: Positive = Field(0.05, description="height above the rails at which the descent begins")
     withdraw_m: Positive = Field(0.06, description="way of the arm downwards after the release")
+    takeoff_velocity_mps: Vector3 = Field(
+        (0.0, 0.0, 0.0), description="velocity that the arm gives to a UAV it lets go"
+    )
+    launch_m: Vector3 = Field((0.40, 0.0, 0.92), description="where the run-up to that velocity leads through")
+    fly_on: bool = Field(
+        False,
+        description="whether the UAV keeps that velocity with all its thrust: it may then weigh more than can hover",
+    )
     start_offset_m: Vector3 = Field(
         (0.10, 0.10, 0.15), description="half widths of the box in which the UAV starts, about"
     )
     start_above_m: NonNegative = Field(0.20, description="this height above the catch")
     start_speed_mps: NonNegative = Field(0.1, description="largest speed at the start, each axis")
     start_heading_deg: NonNegative = Field(10.0, description="largest heading error at the start")
+
+
+class RotorsInAir(Section):
+    """What motion through the air does to the rotors' thrust and to the body. Not in the paper's experiments."""
+
+    inflow: bool = Field(True, description="thrust by momentum theory at constant rotor speed, models.inflow (I.2)")
+    radius_m: Positive = Field(0.1, description="of a rotor; assumption, no source gives the AR.Drone's")
+    slope: Positive = Field(
+        0.7,
+        description="relative loss of thrust per relative rise of the inflow; assumption: σa/(8λ) of two blades of 2 cm by 10 cm",
+    )
+    inflow_ratio: Positive = Field(
+        0.115, description="v_h/ΩR; assumption: 3300 turns a minute where the AR.Drone hovers"
+    )
+    density_kgm3: Positive = 1.225
+    drag_nspm: NonNegative = Field(
+        0.22, description="linear drag, horizontal; assumption: 0.45 1/s of quadrotors of this mass"
+    )
 
 
 class Eye(Section):
@@ -160,6 +186,7 @@ class Landing(Section):
     imperfections: Imperfections = Imperfections()
     bounds: Bounds = Bounds()
     envelope: Envelope = Envelope()
+    rotors: RotorsInAir = RotorsInAir()
     onboard_kp_nm: Positive3 = (2.0, 2.0, 1.2)
     onboard_kd_nms: Positive3 = (0.18, 0.18, 0.20)
     onboard_lead_s: NonNegative = 0.05

@@ -1,6 +1,5 @@
 """From a landing's scenario to its controller: poses, parameters, and the refusals before anything moves."""
 
-from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -8,39 +7,28 @@ from numpy.typing import NDArray
 
 from armland.control.exact import UavParameters
 from armland.control.gains import Wanted, exact_gains
-from armland.errors import ConfigurationError, WorkspaceError
+from armland.errors import ConfigurationError
 from armland.estimation.contact import Contact, Switching, contact_parameters
 from armland.estimation.plate import PoseFilter, pose_filter_parameters
 from armland.estimation.wrench import Wrench, wrench_parameters
 from armland.mission.bounds import thresholds, tuned
+from armland.mission.landing_checks import BEYOND_M, check_capture, check_weight
 from armland.mission.landing_procedure import LANDING
 from armland.mission.landing_scenario import Landing, LandingScenario
 from armland.mission.landing_state import parameters_layout
+from armland.mission.landing_way import UPRIGHT, survey, targets
+from armland.mission.launch import Launch, plan_launch, set_launch, timed
+from armland.mission.launch_procedure import gives_speed, takeoff_phases
 from armland.mission.phase_table import Table, compile_table
 from armland.mission.phases import Phase
-from armland.mission.takeoff_procedure import TAKEOFF
-from armland.mission.tracking_reach import check_tracking, out_of_reach
 from armland.models.arm import ArmModel
-from armland.models.capture import GATE_M, Grip, covered_offset, lateral_speed_bound
 from armland.models.parameters import arm_model
-from armland.models.workspace import check_path, home_poses
-from armland.rotations import Array, rotation_error
+from armland.rotations import Array
 
 GRAVITY = 9.81
 
-UPRIGHT = np.eye(3)
-"""End effector's orientation: pointing up, its x axis along the world's, so that the camera looks beside the UAV's nose."""
-
-BEYOND_M = 0.006
-"""How far beyond the plate's face the arm would close."""
-
-CLOSE_S = next(p.duration_s for p in LANDING if p.name == "close")
-
 POSITION = Wanted(30.0, 1.0)
 """Poles of the held UAV's position."""
-
-BRANCHES, MARGIN_RAD = 16, 0.2
-"""Where no home is given: poses that are tried at most, and the distance to all joints' ends that is good enough."""
 
 
 class Setup(NamedTuple):
@@ -58,8 +46,13 @@ class Setup(NamedTuple):
     contact: NDArray[np.void]
 
 
-def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "landing") -> Setup:
+def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "landing", trial: bool = False) -> Setup:
     """Everything that a controller needs, checked.
+
+    Args:
+        scenario: of `landing_scenario`.
+        mission: landing or take-off.
+        trial: whether a UAV may be too heavy for its rotors: for a study that wants to see it fall.
 
     Raises:
         ConfigurationError: contradictory thresholds, a UAV too heavy for magnet, arm or rotors.
@@ -72,13 +65,18 @@ def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "
             f"place.home_deg has {len(landing.place.home_deg)} values; the arm has {arm.joints} joints"
         )
     mass = demonstrator.uav.mass_kg + landing.plate_mass_kg + landing.extra_mass_kg
-    _check_weight(scenario, mass * GRAVITY)
+    check_weight(scenario, mission, mass * GRAVITY, trial)
     if mission == "landing":
         check_capture(landing, mass)
-    phases = tuned(LANDING if mission == "landing" else TAKEOFF, landing, mass * GRAVITY)
+    phases = tuned(LANDING if mission == "landing" else takeoff_phases(landing), landing, mass * GRAVITY)
     tick_s = 1.0 / demonstrator.run.rate_hz
     table = compile_table(phases, thresholds(landing), tick_s)
-    home = _survey(arm, scenario, mission, mass * GRAVITY)
+    home = survey(arm, scenario, mission, mass * GRAVITY)
+    launch: Launch | None = None
+    if mission == "takeoff" and gives_speed(landing):
+        launch = plan_launch(arm, home, landing, mass)
+        phases = timed(phases, launch)
+        table = compile_table(phases, thresholds(landing), tick_s)
     eye = landing.eye
     seen = PoseFilter(
         mass=mass,
@@ -99,155 +97,20 @@ def set_up(scenario: LandingScenario, mission: Literal["landing", "takeoff"] = "
         home,
         phases,
         table,
-        _parameters(scenario, arm, mission, phases, mass),
+        _parameters(scenario, arm, mission, phases, mass, launch),
         pose_filter_parameters(seen, tick_s),
         wrench_parameters(wrench, tick_s),
         contact_parameters(contact, tick_s),
     )
 
 
-def _check_weight(scenario: LandingScenario, weight: float) -> None:
-    landing, rotors = scenario.landing, scenario.demonstrator.rotors
-    held = landing.envelope.hinge_force_share * landing.magnet_rating_n
-    problems = []
-    if weight > held:
-        problems.append(
-            f"the UAV weighs {weight:.1f} N; the magnet may be loaded with {held:.1f} N, "
-            f"{landing.envelope.hinge_force_share:g} of its rating of {landing.magnet_rating_n:g} N: "
-            f"at most {held / GRAVITY:.2f} kg can be held"
-        )
-    lift = 0.9 * 4.0 * rotors.max_thrust_n
-    if weight > lift:
-        problems.append(
-            f"the UAV weighs {weight:.2f} N; its rotors give {4.0 * rotors.max_thrust_n:.2f} N, of which {lift:.2f} N may go "
-            f"into hovering: at most {lift / GRAVITY:.3f} kg can fly"
-        )
-    if problems:
-        raise ConfigurationError("\n  ".join(problems))
-
-
-def check_capture(landing: Landing, mass: float) -> None:
-    """Refuse thresholds at which the closed forms exclude a capture of a UAV of `mass` kg whatever else is ideal.
-
-    Raises:
-        ConfigurationError: the magnet would not be covered, or the supervisor would have given up.
-    """
-    b, grip = landing.bounds, Grip(rated_force=landing.magnet_rating_n)
-    covered = covered_offset(grip)
-    if b.align_offset_m >= covered:
-        raise ConfigurationError(
-            f"bounds.align_offset_m = {b.align_offset_m:g} m lets the arm close where the plate does not cover the magnet; "
-            f"it must be below {covered:g} m, the plate's radius less that of the circle of pads"
-        )
-    # No approach of the mission is faster than the peak of its move: 35/16 of way over time.
-    fastest = 35.0 / 16.0 * (landing.place.standoff_m + BEYOND_M) / CLOSE_S + b.align_speed_mps
-    across = lateral_speed_bound(grip, mass, fastest, GATE_M)
-    if b.align_speed_mps >= across:
-        raise ConfigurationError(
-            f"bounds.align_speed_mps = {b.align_speed_mps:g} m/s carries the plate off the magnet before it grips; "
-            f"it must be below {across:.3f} m/s"
-        )
-    if b.align_tilt_deg >= landing.envelope.tilt_deg:
-        raise ConfigurationError(
-            f"bounds.align_tilt_deg = {b.align_tilt_deg:g} must be below envelope.tilt_deg = {landing.envelope.tilt_deg:g}, "
-            "where the UAV counts as out of control"
-        )
-
-
-def way_points(landing: Landing, mission: str) -> list[Array]:
-    """End effector positions (3,) m that a mission visits, in order."""
-    place = landing.place
-    catch, down = np.array(place.catch_m), np.array(place.put_down_m)
-    e = np.array([0.0, 0.0, 1.0])
-    wait, above = catch - place.wait_below_m * e, down + place.above_m * e
-    if mission == "takeoff":
-        return [down - place.withdraw_m * e, down, above, catch, catch - place.withdraw_m * e]
-    return [wait, catch, above, down, down - place.withdraw_m * e]
-
-
-def _survey(arm: ArmModel, scenario: LandingScenario, mission: str, weight: float) -> Array:
-    """Joint positions (n,) at the mission's first way point.
-
-    Raises:
-        WorkspaceError: a way point, or where the arm follows the UAV, out of reach.
-        ConfigurationError: joint torques beyond their limits.
-    """
-    landing = scenario.landing
-    points = way_points(landing, mission)
-    fine = np.concatenate([np.linspace(a, b, 20) for a, b in pairwise(points)])
-    if landing.place.home_deg is not None:
-        near = [np.deg2rad(landing.place.home_deg)]
-    else:
-        near = [p.q for p in home_poses(arm, np.array(landing.place.catch_m), None, arm.joints // 2)[:BRANCHES]]
-    best, widest, refusal = near[0], -np.inf, WorkspaceError("")
-    for start in near:
-        # From the pose that is known the arm is led to the first way point: no other branch of the kinematics comes in.
-        arm.update(start, np.zeros(arm.joints))
-        q = start
-        for point in np.linspace(arm.position.copy(), points[0], 25):
-            q = _solve(arm, q, point)
-        try:
-            margin = check_path(arm, q, UPRIGHT, fine, np.arange(len(fine), dtype=float))
-        except WorkspaceError as e:
-            refusal = e
-            continue
-        if margin > widest:
-            best, widest = q, margin
-        if margin > MARGIN_RAD:
-            break
-    if widest < 0.0:
-        raise WorkspaceError(
-            f"the arm cannot follow the {mission}'s way: {out_of_reach(refusal)}; the way is given by place.catch_m = "
-            f"{landing.place.catch_m}, put_down_m = {landing.place.put_down_m}, wait_below_m, above_m and withdraw_m"
-        ) from refusal
-    _check_torque(arm, best, fine, weight)
-    if mission == "landing":
-        check_tracking(arm, best, UPRIGHT, landing)
-    return best
-
-
-def _check_torque(arm: ArmModel, q: Array, points: Array, weight: float) -> None:
-    for point in points[::4]:
-        q = _solve(arm, q, point)
-        # Half again as much as at rest, for what it takes to move it.
-        needed = np.abs(arm.gravity + 1.5 * weight * arm.jacobian[2])
-        worst = int((needed / arm.tau_max).argmax())
-        if needed[worst] > 0.9 * arm.tau_max[worst]:
-            raise ConfigurationError(
-                f"joint {arm.joint_names[worst]} would need {needed[worst]:.0f} N·m to carry a UAV of {weight:.1f} N at "
-                f"({', '.join(f'{x:.2f}' for x in point)}) m; 0.9 of its limit is {0.9 * arm.tau_max[worst]:.0f} N·m"
-            )
-
-
-def _solve(arm: ArmModel, q: Array, point: Array) -> Array:
-    for _ in range(30):
-        arm.update(q, np.zeros(arm.joints))
-        e = np.concatenate([point - arm.position, rotation_error(arm.rotation.copy(), UPRIGHT)])
-        if np.abs(e).max() < 1e-8:
-            break
-        J = arm.jacobian
-        q = np.clip(q + J.T @ np.linalg.solve(J @ J.T + 1e-8 * np.eye(6), e), arm.q_min, arm.q_max)
-    return q
-
-
-def _targets(landing: Landing, phases: tuple[Phase, ...]) -> Array:
-    place, up = landing.place, np.array([0.0, 0.0, 1.0])
-    catch, down = np.array(place.catch_m), np.array(place.put_down_m)
-    known = {
-        "carry": down + place.above_m * up,
-        # A little further than the rails, so that it arrives there with speed.
-        "set_down": down - 0.004 * up,
-        "reach": down - 0.02 * up,
-        # A little further than the plate's face, so that all pads touch.
-        "touch": down + 0.001 * up,
-        "lift": down + place.above_m * up,
-        "carry_up": catch,
-    }
-    return np.array([known.get(p.name, catch) for p in phases])
-
-
 def _parameters(
-    scenario: LandingScenario, arm: ArmModel, mission: str, phases: tuple[Phase, ...], mass: float
+    scenario: LandingScenario,
+    arm: ArmModel,
+    mission: str,
+    phases: tuple[Phase, ...],
+    mass: float,
+    launch: Launch | None,
 ) -> NDArray[np.void]:
     landing, d = scenario.landing, scenario.demonstrator
     p = np.zeros(1, parameters_layout(arm.joints, len(phases)))
@@ -276,10 +139,12 @@ def _parameters(
     p["qd_max"] = np.resize(landing.envelope.joint_speed_rad_s, arm.joints)
     p["standoff"], p["beyond"] = landing.place.standoff_m, BEYOND_M
     p["depth"] = landing.place.withdraw_m
-    p["targets"] = _targets(landing, phases)
+    p["targets"] = targets(landing, phases)
     p["track"], p["track_a"], p["coast"] = 12.0, 3.0, 0.06
     p["admittance"], p["admittance_max"] = 3e-3, 4e-3
-    p["camera"] = landing.eye.camera_m
+    p["camera"], p["drag"] = landing.eye.camera_m, landing.rotors.drag_nspm
+    if launch is not None:
+        set_launch(p, launch, landing, d, [phase.name for phase in phases])
     _supervisor(p, landing, rate)
     return p
 

@@ -29,6 +29,9 @@ def parameters_layout(joints: int, phases: int) -> np.dtype:
             ("thrust_min", "f8"),  # N
             ("force_slack", "f8"),  # N, hinge force behind its expectation that stops the ramp
             ("station_period", "i8"),  # ticks
+            ("drag", "f8"),  # N·s/m, horizontal
+            ("launch", "f8", (3,)),  # m/s, velocity that a take-off gives to the UAV [w]
+            ("fly_on", "i8"),  # 1 where the UAV keeps it with all its thrust
             # Arm
             ("k_free", "f8"),  # 1/s², position error to acceleration while nothing is held
             ("d_free", "f8"),  # 1/s
@@ -54,6 +57,8 @@ def parameters_layout(joints: int, phases: int) -> np.dtype:
             ("standoff", "f8"),  # m
             ("beyond", "f8"),  # m, how far beyond the plate's face the arm would close
             ("depth", "f8"),  # m, that the arm backs off
+            ("launch_s", "f8"),  # s, of the run-up, and of coming to rest
+            ("leave_s", "f8"),  # s, in which the arm goes down by the depth
             ("targets", "f8", (phases, 3)),  # m, end effector [w], of the phases that move
             ("track", "f8"),  # rad/s, of the filter on the plate's motion
             ("track_a", "f8"),  # m/s², its largest acceleration
@@ -106,6 +111,8 @@ def memory_layout(joints: int) -> np.dtype:
             ("acting", "f8"),  # as far as is known
             ("hover", "f8"),  # N, command that carries the weight
             ("integral", "f8", (3,)),
+            ("anchor", "f8", (3,)),  # m, where its centre of mass was when it began to fly on [w]
+            ("cruising", "i8"),  # tick of that; 0: not yet
             ("q_d", "f8", (4,)),  # set-point [w]
             # Observer (X.3)
             ("d", "f8", (3,)),  # N

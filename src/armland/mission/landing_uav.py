@@ -13,14 +13,14 @@ missing thrust must leave to the arm: a UAV that nobody carries is not let down.
 import numpy as np
 from numba import njit
 
-from armland.control.station_keeping import StationGains, StationReference, keep_station
+from armland.control.station_keeping import StationGains, StationReference, attitude_of, keep_station
 from armland.mission.landing_state import RING
 from armland.mission.phases import LINK, UAV
 from armland.mission.records import UavMode
 from armland.records import Record
 from armland.rotations import Array, conjugate, cross, matrix, multiply
 
-AUTONOMOUS, STATION, LEVEL, RAMP, BALANCE, OFF = range(len(UAV))
+AUTONOMOUS, STATION, LEVEL, RAMP, BALANCE, OFF, RUN_UP, CRUISE = range(len(UAV))
 MODE_AUTONOMOUS, MODE_OFF = UavMode.AUTONOMOUS, UavMode.OFF
 MODES = (UavMode.GUIDED, UavMode.HELD, UavMode.LANDED)
 """By index into `phases.LINK`."""
@@ -58,18 +58,25 @@ def command_uav(
         c: command, written.
     """
     c.uav_mode = MODES[link]
-    if what == AUTONOMOUS or (what == STATION and not e.plate_valid):
+    blind = not e.plate_valid and (what == STATION or (what == CRUISE and not p.fly_on))
+    if what == AUTONOMOUS or blind:
         c.uav_mode = MODE_AUTONOMOUS
         s.thrust = s.hover
         _level(p, s)
     elif what == STATION:
         if tick % p.station_period == 0:
-            _keep(e, p, s)
+            _keep(p.station - p.lever, np.zeros(3), e, p, s)
+    elif what == CRUISE:
+        if tick % p.station_period == 0 or s.cruising == 0:
+            _cruise(tick, e, p, s)
     elif what == RAMP:
         _ramp(share * s.hover, link == HELD, e, p, s)
         _level(p, s)
         if share == 0.0 and s.thrust <= p.thrust_min:
             s.thrust, c.uav_mode = 0.0, MODE_OFF
+    elif what == RUN_UP:
+        # The thrust that carried the weight at rest: what the arm pushes with is not to be balanced.
+        _against_drag(e.v, p, s)
     elif what == BALANCE:
         step = min(max(BALANCE_RATE * e.hinge_force[2], -p.thrust_rate), p.thrust_rate) * p.tick_s
         s.thrust = min(max(s.thrust + step, p.thrust_min), p.thrust_max)
@@ -93,15 +100,41 @@ def _level(p: Record, s: Record) -> None:
 
 
 @njit(cache=True)
-def _keep(e: Record, p: Record, s: Record) -> None:
+def _against_drag(v: Array, p: Record, s: Record) -> None:
+    # Tilted so that the thrust holds the drag at velocity v: the hinge is then free of force at a constant speed.
+    force = np.array([p.drag * v[0], p.drag * v[1], p.weight])
+    q_d = attitude_of(force, p.heading)
+    for i in range(4):
+        s.q_d[i] = q_d[i]
+
+
+@njit(cache=True)
+def _cruise(tick: int, e: Record, p: Record, s: Record) -> None:
+    if p.fly_on:
+        # Too heavy to hover: all that the rotors give, and the tilt that keeps the speed by itself.
+        s.thrust = p.thrust_max
+        _against_drag(p.launch, p, s)
+        s.cruising = tick
+        return
+    if s.cruising == 0:
+        s.cruising = tick
+        R = matrix(e.quat)
+        for i in range(3):
+            s.anchor[i] = e.plate[i] - (R[i, 0] * p.lever[0] + R[i, 1] * p.lever[1] + R[i, 2] * p.lever[2])
+    _keep(s.anchor + p.launch * ((tick - s.cruising) * p.tick_s), p.launch + 0.0, e, p, s)
+
+
+@njit(cache=True)
+def _keep(place: Array, moving: Array, e: Record, p: Record, s: Record) -> None:
+    # At `place` (3,), m, of the centre of mass, which moves at `moving` (3,), m/s.
     R = matrix(e.quat)
     position = e.plate - R @ p.lever
     velocity = e.plate_v - R @ cross(e.omega, p.lever)
     period = p.station_period * p.tick_s
     gains = StationGains(p.mass, 9.81, period, 1.2, 3.0, 1.2, 0.3, 3.0, 0.3, p.thrust_min, p.thrust_max)
-    still = np.zeros(3)
-    reference = StationReference(p.station - p.lever, still, still, p.heading)
-    thrust, q_d, integral = keep_station(position, velocity, e.quat, reference, still, gains, s.integral.copy())
+    reference = StationReference(place, moving, np.zeros(3), p.heading)
+    wind = moving * (-p.drag / p.mass)
+    thrust, q_d, integral = keep_station(position, velocity, e.quat, reference, wind, gains, s.integral.copy())
     s.thrust = thrust
     for i in range(3):
         s.integral[i] = integral[i]

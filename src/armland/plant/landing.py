@@ -8,8 +8,9 @@ import numpy as np
 from armland.errors import ConfigurationError, PlantError
 from armland.mission.landing_procedure import LANDING
 from armland.mission.landing_scenario import LandingScenario
+from armland.mission.launch_procedure import takeoff_phases
 from armland.mission.records import LandingTick, UavMode
-from armland.mission.takeoff_procedure import TAKEOFF
+from armland.models.inflow import advance_of, disc_of
 from armland.models.uav import mixer
 from armland.plant.camera import NOISE_WIDTH, SAMPLE, camera_parameters
 from armland.plant.camera import STATE as CAMERA_STATE
@@ -24,9 +25,6 @@ from armland.plant.magnet import Magnet, device
 from armland.plant.noise import BLOCK, WhiteNoise, stream
 from armland.plant.scene import ROTORS, UAV
 from armland.rotations import Array, from_rotation_vector, matrix, multiply
-
-PROCEDURES = {"air": tuple(p.name for p in LANDING), "cradle": tuple(p.name for p in TAKEOFF)}
-"""Phases of the mission that begins there."""
 
 UAV_WATCHDOG_S = 0.3
 """Silence of the link after which the UAV helps itself. Assumption; the AR.Drone's own watchdogs lie around it."""
@@ -115,7 +113,8 @@ class LandingPlant:
         self._tau_max = np.abs(limits).min(axis=1)
         self._friction = self.scene.model.dof_frictionloss[self.scene.joint_dof].copy()
         self._solimp, self._braked = self.scene.model.dof_solimp[self.scene.joint_dof].copy(), 0
-        self.faults = FaultSchedule(scenario.landing.faults, PROCEDURES[start], scenario.demonstrator.run.rate_hz)
+        phases = tuple(p.name for p in (LANDING if start == "air" else takeoff_phases(scenario.landing)))
+        self.faults = FaultSchedule(scenario.landing.faults, phases, scenario.demonstrator.run.rate_hz)
         self._tick = 0
 
     def connect(self) -> None:
@@ -141,6 +140,7 @@ class LandingPlant:
             thrust = s.uav_mass * 9.81 / drawn.thrust_factor
             self._state["rotor"] = self._state["rotor_asked"] = thrust / ROTORS * drawn.thrust_factor
             d.xfrc_applied[s.uav_body] = [0.0, 0.0, s.uav_mass * 9.81, 0.0, 0.0, 0.0]
+            self._state["lift"] = self._state["rotor"]
         self._state["arrived"][0, 5] = UavMode.AUTONOMOUS if flying else UavMode.OFF
         self._state["arrived"][0, 0] = 1.0
         mujoco.mj_forward(s.model, d)
@@ -268,6 +268,9 @@ def _parameters(scenario: LandingScenario, scene: LandingScene, drawn: Draw) -> 
     p["mixer"], p["mixer_inverse"] = A, np.linalg.inv(A)
     p["rotor_min"], p["rotor_max"] = rotors.min_thrust_n, rotors.max_thrust_n
     p["rotor_gain"] = 1.0 - np.exp(-1.0 / (rate * rotors.time_constant_s))
+    inflow = landing.rotors
+    p["inflow"], p["disc"], p["slope"] = inflow.inflow, disc_of(inflow.radius_m, inflow.density_kgm3), inflow.slope
+    p["advance"], p["drag"] = advance_of(inflow.slope, inflow.inflow_ratio), inflow.drag_nspm
     p["thrust_factor"], p["imu_bias"], p["wrench_bias"] = drawn.thrust_factor, drawn.imu_bias, drawn.wrench_bias
     p["filter_gain"] = 1.0 - np.exp(-2.0 * np.pi * sensors.force_filter_hz / rate)
     p["hover_noise"] = landing.imperfections.hover_noise_m

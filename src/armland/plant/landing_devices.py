@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from armland.models.inflow import factor_at_speed
 from armland.plant.landing_onboard import RING, fly
 from armland.records import Record
 from armland.rotations import Array, from_rotation_vector, matrix, multiply
@@ -32,6 +33,11 @@ PARAMETERS = np.dtype(
         ("rotor_max", "f8"),
         ("rotor_gain", "f8"),  # share of a step that a rotor makes in one tick
         ("thrust_factor", "f8"),
+        ("inflow", "i8"),  # 1 where the rotors feel their own motion
+        ("disc", "f8"),  # 2ρA of one rotor, kg/m
+        ("slope", "f8"),
+        ("advance", "f8"),
+        ("drag", "f8"),  # N·s/m, horizontal
         ("tick_s", "f8"),
         ("sigma_q", "f8"),
         ("sigma_qd", "f8"),
@@ -64,7 +70,9 @@ STATE = np.dtype(
         ("thrust", "f8"),  # N, set-point in use
         ("rate", "f8", (3,)),
         ("rotor_asked", "f8", (4,)),
-        ("rotor", "f8", (4,)),
+        ("rotor", "f8", (4,)),  # thrust that each would give at rest, N
+        ("lift", "f8", (4,)),  # thrust that each gives, N
+        ("air", "f8", (3,)),  # velocity of the air, m/s, world
         # Faults, written by the plant.
         ("uplink_lost", "i8"),
         ("downlink_lost", "i8"),
@@ -161,7 +169,7 @@ def _truth(data: Array, a: Record, s: Record, t: Record) -> None:
         t.quat[i] = data[a.quat + i]
         t.plate_quat[i] = data[a.plate_quat + i]
         t.ee_quat[i] = data[a.ee_quat + i]
-        t.rotor_thrust[i] = s.rotor[i]
+        t.rotor_thrust[i] = s.lift[i]
     R = matrix(t.plate_quat)
     for i in range(3):
         # The sensor speaks plate axes, and of the force on the plate.
@@ -245,11 +253,32 @@ def actuate(
     wrench = np.zeros(4)
     for k in range(4):
         s.rotor[k] += p.rotor_gain * (s.rotor_asked[k] * p.thrust_factor * s.health[k] - s.rotor[k])
+    _rotors_in_air(R, t, p, s)
+    for k in range(4):
         for i in range(4):
-            wrench[i] += p.mixer[i, k] * s.rotor[k]
+            wrench[i] += p.mixer[i, k] * s.lift[k]
     for i in range(3):
         applied[i] = R[i, 2] * wrench[0] + s.force[i]
+        if i < 2:
+            applied[i] -= p.drag * (t.v_cm[i] - s.air[i])
         applied[3 + i] = 0.0
         for k in range(3):
             applied[3 + i] += R[i, k] * wrench[1 + k]
     return True
+
+
+@njit(cache=True)
+def _rotors_in_air(R: Array, t: Record, p: Record, s: Record) -> None:
+    # What each rotor gives of its static thrust, by the velocity of its hub through the air.
+    if not p.inflow:
+        for k in range(4):
+            s.lift[k] = s.rotor[k]
+        return
+    x, y, z = 0.0, 0.0, 0.0
+    for i in range(3):
+        v = t.v_cm[i] - s.air[i]
+        x, y, z = x + R[i, 0] * v, y + R[i, 1] * v, z + R[i, 2] * v
+    in_plane = np.sqrt(x * x + y * y)
+    for k in range(4):
+        axial = z + t.omega[0] * p.mixer[1, k] + t.omega[1] * p.mixer[2, k]
+        s.lift[k] = s.rotor[k] * factor_at_speed(s.rotor[k], in_plane, axial, p.disc, p.slope, p.advance)

@@ -1,0 +1,93 @@
+"""The take-off that gives the UAV a speed: `TAKEOFF` up to the hand-over, then run-up, release in motion, leave."""
+
+from armland.mission.finals import FINALS
+from armland.mission.landing_scenario import Landing
+from armland.mission.phases import CARRIED_N, Condition, Guard, Phase
+from armland.mission.takeoff_procedure import TAKEOFF
+
+C, G = Condition, Guard
+
+CURRENT_GONE_S = 0.08
+"""Time after which a magnet that was switched off no longer holds: four of its time constants."""
+
+FLOWN_S = 3.0
+"""Time for which a UAV that was given a speed is waited for after the arm has left it."""
+
+_KNOWN = {p.name: p for p in TAKEOFF}
+_BEFORE = ("self_test", "reach", "touch", "grip", "spin_up", "lift")
+
+
+def _leading_to(phase: Phase, target: str) -> Phase:
+    return phase._replace(guards=tuple(g._replace(target=target) for g in phase.guards))
+
+
+LAUNCH = (
+    *(_KNOWN[name] for name in _BEFORE),
+    _leading_to(_KNOWN["carry_up"], "bring"),
+    # Upwards first: beside the rails, not between them, there is room to run.
+    _leading_to(_KNOWN["carry_up"], "hand_back")._replace(name="bring"),
+    _KNOWN["hand_back"]._replace(
+        # What the arm still carries here the UAV loses at the release, in the arm's way.
+        guards=(
+            G("launch", (C("hinge_force", "<", "force_light_n"), *_KNOWN["hand_back"].guards[0].conditions[1:]), 0.3),
+        )
+    ),
+    Phase(
+        "launch",
+        force_n=CARRIED_N,
+        kind="held",
+        arm="launch",
+        uav="run_up",
+        magnet="on",
+        held=True,
+        link="held",
+        on_timeout="holding",
+        guards=(G("release", (C("progress", ">", "almost_one"), C("hinge_force", "<", "force_launched_n")), 0.03),),
+    ),
+    Phase(
+        "release",
+        force_n=CARRIED_N,
+        kind="touch",
+        # It goes on as fast as before while the magnet's current dies.
+        arm="launch",
+        uav="cruise",
+        timeout_s=1.0,
+        on_timeout="leave",
+        guards=(G("leave", (C("elapsed", ">", "current_gone_s"),)),),
+    ),
+    Phase(
+        "leave",
+        arm="leave",
+        uav="cruise",
+        guards=(G("clear", (C("progress", ">", "almost_one"),)),),
+    ),
+    Phase(
+        "clear",
+        # The UAV has left the camera's sight: it flies by itself.
+        kind="ground",
+        arm="hold",
+        uav="autonomous",
+        on_timeout="done",
+        guards=(G("done", (C("elapsed", ">", "flown_s"),)),),
+    ),
+    *(p if p.name != "done" else Phase("done", arm="hold", uav="autonomous", final=True) for p in FINALS),
+)
+
+
+def gives_speed(landing: Landing) -> bool:
+    """Whether the take-off is the one with a run-up."""
+    return landing.place.fly_on or any(landing.place.takeoff_velocity_mps)
+
+
+def takeoff_phases(landing: Landing) -> tuple[Phase, ...]:
+    """The phases of the scenario's take-off."""
+    if not gives_speed(landing):
+        return TAKEOFF
+    if landing.place.fly_on:
+        # Where the rotors give all they have, the hinge keeps what they cannot carry.
+        known = {
+            "hand_back": _leading_to(_KNOWN["hand_back"], "launch"),
+            **{p.name: p._replace(uav="cruise") for p in LAUNCH if p.name in ("clear", "done")},
+        }
+        return tuple(known.get(p.name, p) for p in LAUNCH)
+    return LAUNCH
