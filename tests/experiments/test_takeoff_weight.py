@@ -40,6 +40,17 @@ def test_a_harder_contact_would_rattle_on_the_way():
     assert setup.table.names[int(records["mission"]["phase"][-1])] == "holding"
 
 
+def test_a_heavy_uav_is_not_taken_for_a_drifting_sensor_while_its_weight_is_found_out():
+    outcome = fly_takeoff(landing_scenario("landing", {"extra_mass_kg": 0.1}), 1)
+    assert outcome.success, outcome.reason
+
+
+def test_a_sensor_that_drifts_meanwhile_is_found():
+    fault = {"kind": "wrench_drift", "phase": "hand_back", "after_s": 0.05, "size": 12.0}
+    outcome = fly_takeoff(landing_scenario("landing", {"faults": [fault]}), 1)
+    assert (outcome.fault, outcome.end, outcome.state) == ("wrench_drift", "holding", "held")
+
+
 def test_a_uav_too_heavy_at_rest_flies_with_the_arms_speed_and_sinks_without():
     weight = 1.0008 * STATIC
     assert flies_off(landing_scenario(), (0.0, -0.6, 0.0), weight)
@@ -50,7 +61,7 @@ def test_theory_is_bracketed_monotone_and_says_what_it_would_take():
     found = study(landing_scenario(), flights=False)
     assert found.hover_inflow_mps == pytest.approx(4.92, abs=0.01)
     assert all(0.4 < v < 1.0 for v in found.arm_speed_mps.values())
-    for name in ("constant speed", "constant power"):
+    for name in ("constant rotor speed", "constant power"):
         kept, free, best = found.sustained[name], found.sustained[f"{name}, no drag"], found.most[name][0]
         assert 1.0 < kept < free < 1.005 < best
         speeds = [found.speed_for_gain[f"{name}, no drag"][g] for g in ("0.05", "0.1", "0.2")]

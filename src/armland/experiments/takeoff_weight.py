@@ -107,7 +107,7 @@ def study(scenario: LandingScenario, flights: bool = True, progress: Progress | 
     rotors, drag = rotors_of(landing, scenario.demonstrator), landing.rotors.drag_nspm
     speeds = arm_speeds(scenario)
     fastest = max(speeds["forward"], speeds["sideways"])
-    readings = {"constant speed": False, "constant power": True}
+    readings = {"constant rotor speed": False, "constant power": True}
     level, thrown, gains = {}, {}, {}
     for name, power in readings.items():
         level[name] = sustained(rotors, fastest, drag, power) / rotors.static
@@ -212,7 +212,7 @@ def _verdict(
     level: dict[str, float], thrown: dict[str, dict[str, float]], rotors: Rotors, speeds: dict[str, float]
 ) -> str:
     fastest = max(speeds["forward"], speeds["sideways"])
-    gains = sorted(100.0 * (level[name] - 1.0) for name in ("constant speed", "constant power"))
+    gains = sorted(100.0 * (level[name] - 1.0) for name in ("constant rotor speed", "constant power"))
     more = [100.0 * (t["thrown"] - t["from rest"]) for t in thrown.values()]
     gram = 10.0 * rotors.static / GRAVITY
     return (
