@@ -4,8 +4,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from armland.mission.landing_arm import BRAKE, JOIN, arm_torque, begin_reference, held_force, refer, track
-from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, screened, tilt_of
+from armland.mission.landing_arm import BACK_OFF, BRAKE, JOIN, TRACK, YIELD, arm_torque, begin_reference, held_force, refer, track
+from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, look_at_grip, tilt_of
 from armland.mission.landing_uav import AUTONOMOUS, LEVEL, STATION, command_uav, thrust_in_force
 from armland.mission.phases import MAGNET, SIGNAL, SIGNALS, next_phase
 from armland.mission.supervisor import find_fault, limit
@@ -106,10 +106,18 @@ def enter(
 
 @njit(cache=True)
 def load_expected(phase: Record, elapsed: float, e: Record, p: Record, s: Record) -> float:
-    """Vertical hinge force, N, that load and thrust explain, where they do; else NaN."""
-    if phase.free:
+    """Vertical hinge force, N, that load and thrust explain, where they do; else NaN.
+
+    None where the arm follows the plate from below, where it has had the time to learn the sensor's bias or to draw back, and
+    where it has had the time to give way; what the rotors leave where the arm carries and the cradle cannot.
+    """
+    if phase.arm == TRACK:
+        return 0.0
+    if phase.arm == YIELD:
+        return 0.0 if elapsed > 0.5 else np.nan
+    if phase.free or phase.arm == BACK_OFF:
         return 0.0 if elapsed > 1.0 else np.nan
-    if phase.held and phase.observe:
+    if phase.held and (phase.observe or e.r[2] > p.clear_z):
         return float(p.weight * (1.0 - e.thrust / max(s.hover, 1e-3)))
     return np.nan
 
@@ -120,7 +128,7 @@ def landing_tick(
     p_: NDArray[np.void],
     s_: NDArray[np.void],
     arm_: NDArray[np.void],
-    good: NDArray[np.void],
+    bad: int,
     sample: NDArray[np.void],
     filter_p: NDArray[np.void],
     filter_s: NDArray[np.void],
@@ -146,7 +154,7 @@ def landing_tick(
         p_: `landing_state.parameters_layout`.
         s_: `landing_state.memory_layout`.
         arm_: arm model's state at the measurement's joints.
-        good: last good measurement.
+        bad: numbers in the measurement that were not finite, and are replaced.
         sample: camera sample for the pose filter.
         filter_p: pose filter's parameters.
         filter_s: its memory.
@@ -168,17 +176,17 @@ def landing_tick(
     t, p, s, arm = tick[0], p_[0], s_[0], arm_[0]
     m, e, c = t.measurement, t.estimate, t.command
     now = m.tick
-    bad = screened(m, good[0])
     row = phases[s.phase]
     held = row.held == 1
     # Estimate.
     e.thrust = thrust_in_force(now, p, s)
     estimate_arm(m, arm, e)
     # Where arm or cradle carry, they take what the rotors leave: nothing accelerates much.
-    flies = row.uav == AUTONOMOUS or row.uav == STATION or row.uav == LEVEL
+    flies = row.uav == AUTONOMOUS or row.uav == STATION or (row.uav == LEVEL and row.magnet != MAGNET_ON)
     lift = e.thrust * p.weight / max(s.hover, 1e-3) if flies else p.weight
     estimate_plate(m, arm, p.camera.copy(), lift, sample, filter_p, filter_s, plate, e)
     s.seen = 1 if e.plate_valid else s.seen
+    look_at_grip(m, p, filter_p[0].marker_offset, filter_p[0].marker_quat, s)
     way = signals[S_RETREAT]
     estimate_load(
         m,
@@ -194,16 +202,17 @@ def landing_tick(
         load,
         e,
     )
+    known = now - m.wrench_tick <= p.wrench_age
     for i in range(3):
         e.disturbance[i] = s.d[i]
+        # A force that is not known gives way to nothing.
+        e.hinge_force[i] = e.hinge_force[i] if known else 0.0
     # Mission.
     elapsed = (now - s.begin) * p.tick_s
     signals_of(row, t.mission.progress, elapsed, load[0].contact, wrench_s[0].blocks, t, p, s, signals)
-    magnet_on = c.magnet == MAGNET_ON and elapsed > COIL_S
+    magnet_on = (c.magnet == MAGNET_ON and elapsed > COIL_S) or row.magnet == MAGNET_TEST
     expected = load_expected(row, elapsed, e, p, s)
-    fault = 0
-    if not row.final:
-        fault = find_fault(bad, magnet_on, expected, m, e, t.health, p, s, debounce, rows[:, s.phase].copy())
+    fault = find_fault(bad, magnet_on, expected, m, e, t.health, p, s, debounce, rows[:, s.phase].copy())
     new = rows[fault, s.phase] if fault else next_phase(s.phase, elapsed, signals, phases, guards, conditions, counts)
     if fault:
         s.fault = fault
@@ -225,5 +234,9 @@ def landing_tick(
     if held:
         held_force(e, t.reference, p, s, row.observe == 1)
     arm_torque(held, m, e, t.reference, p, arm, s, c)
+    if row.arm == BRAKE:
+        # What the last good sample says that holds it, should a brake let go; no law runs on it.
+        for i in range(m.q.shape[0]):
+            c.tau[i] = arm.gravity[i]
     command_uav(now, row.uav, row.share, row.link, filter_s[0].align.quat.copy(), e, p, s, c)
     limit(bad, arm.gravity, m, e, p, s, c, t.health)

@@ -8,6 +8,7 @@ from armland.estimation.plate import MEMORY as FILTER_MEMORY
 from armland.estimation.plate import PLATE
 from armland.estimation.wrench import MEMORY as WRENCH_MEMORY
 from armland.mission.landing import COUNT, landing_tick
+from armland.mission.landing_estimate import admit
 from armland.mission.landing_setup import Setup
 from armland.mission.landing_state import memory_layout
 from armland.mission.records import LandingTick, landing_layout
@@ -33,7 +34,6 @@ class LandingController:
         self.memory = np.zeros(1, memory_layout(n))
         self._good = np.zeros(1, landing_layout("measurement", n))
         self._records = (
-            self._good,
             np.zeros(1, SAMPLE),
             setup.filter,
             np.zeros(1, FILTER_MEMORY),
@@ -44,7 +44,7 @@ class LandingController:
             np.zeros(1, CONTACT_MEMORY),
             np.zeros(1, LOAD),
         )
-        rows = fault_rows(tuple("" if p.final else p.kind for p in setup.phases), table.names)
+        rows = fault_rows(setup.phases)
         miss = table.names.index("miss") if "miss" in table.names else -1
         self._tables = (
             table.phases,
@@ -75,12 +75,8 @@ class LandingController:
 
     def update(self, tick: LandingTick) -> None:
         """Fill estimate, mission, reference, command and health of `tick` from its measurement."""
-        m = tick.measurement
-        arm, q, qd = self.arm, m["q"][0], m["qd"][0]
-        if not (np.isfinite(q.sum()) and np.isfinite(qd.sum())):
-            q, qd = np.where(np.isfinite(q), q, self._good["q"][0]), np.where(np.isfinite(qd), qd, 0.0)
-        arm.qpos[:] = q
-        arm.qvel[:] = qd
+        arm, m = self.arm, tick.measurement
+        bad = admit(m, self._good, arm.qpos, arm.qvel)
         arm.refresh(velocity_terms=True)
         if self._first or int(m["tick"][0]) % SINGULARITY_PERIOD == 0:
             self.memory["sigma"] = np.linalg.svd(arm.jacobian, compute_uv=False)[-1]
@@ -89,5 +85,4 @@ class LandingController:
             tick.reference["r"] = self.memory["r0"] = arm.position
             tick.mission["progress"] = 0.0
             self.memory["tau"] = arm.gravity
-        arguments = (tick.buffer, self.setup.parameters, self.memory, arm.state, *self._records, *self._tables)
-        landing_tick(*arguments)
+        landing_tick(tick.buffer, self.setup.parameters, self.memory, arm.state, bad, *self._records, *self._tables)

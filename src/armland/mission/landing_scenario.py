@@ -25,6 +25,11 @@ FAULTS = (
     "rotor_loss",
     "overload",
     "unreachable",
+    "non_finite",
+    "encoder_offset",
+    "attitude_offset",
+    "push",
+    "twist",
 )
 """What can be made to fail in the plant."""
 
@@ -46,14 +51,26 @@ class Fault(Section):
         "rotor_loss",
         "overload",
         "unreachable",
+        "non_finite",
+        "encoder_offset",
+        "attitude_offset",
+        "push",
+        "twist",
     ]
     phase: str | None = Field(None, description="phase at whose begin it is armed; the run's begin if absent")
     after_s: NonNegative = Field(0.0, description="time from there")
     lasts_s: Positive = Field(1e6, description="how long it lasts")
     size: Finite = Field(
         1.0,
-        description="drift in N/s, coil or magnet or rotor's share that is lost, load in N, distance in m; not used by the others",
+        description="drift in N/s, coil or magnet or rotor's share that is lost, load or push in N, twist in N·m, distance in m, "
+        "offset in rad; not used by the others",
     )
+    direction: Vector3 = Field((0.0, 0.0, 1.0), description="of a push, the axis of a twist or of an attitude offset, or the way of an unreachable UAV, world")
+    device: Literal["encoders", "wrench", "attitude", "camera"] = Field(
+        "encoders", description="whose samples are not finite"
+    )
+    body: Literal["uav", "tool", "elbow"] = Field("tool", description="what is pushed; the tool is beyond the sensor")
+    joint: int = Field(1, ge=1, description="whose encoder is off, from 1")
 
 
 class Place(Section):
@@ -136,6 +153,7 @@ class Envelope(Section):
     camera_age_ms: Positive = 500.0
     arm_age_ms: Positive = 5.0
     wrench_age_ms: Positive = 20.0
+    slip_m: Positive = Field(0.010, description="offset of the held plate, as the camera sees it, that counts as slipped off")
     tilt_deg: Positive = Field(30.0, description="tilt of the UAV at which it counts as out of control")
 
 

@@ -1,6 +1,6 @@
 """The take-off as a table of phases: the landing backwards; the names of thresholds are those of `bounds.thresholds`."""
 
-from armland.mission.finals import FINALS
+from armland.mission.finals import TAKEOFF_FINALS
 from armland.mission.phases import Condition, Guard, Phase
 
 C, G = Condition, Guard
@@ -15,7 +15,6 @@ TAKEOFF = (
         free=True,
         on_timeout="refused",
         guards=(
-            G("refused", (C("magnet_fault", ">", "half"),)),
             G("reach", (C("magnet_ready", ">", "half"), C("bias_known", ">", "half")), 0.2),
         ),
     ),
@@ -32,18 +31,18 @@ TAKEOFF = (
     ),
     Phase(
         "touch",
-        kind="cradle",
+        kind="ground",
         arm="move",
         uav="off",
         magnet="on",
         duration_s=1.5,
         timeout_s=3.0,
-        on_timeout="secured",
+        on_timeout="refused",
         guards=(G("grip", (C("contact", ">", "half"), C("progress", ">", "almost_one")), 0.05),),
     ),
     Phase(
         "grip",
-        kind="cradle",
+        kind="grip",
         arm="yield",
         uav="off",
         magnet="on",
@@ -53,7 +52,7 @@ TAKEOFF = (
     ),
     Phase(
         "spin_up",
-        kind="cradle",
+        kind="grip",
         link="landed",
         arm="yield",
         uav="ramp",
@@ -61,7 +60,7 @@ TAKEOFF = (
         magnet="on",
         timeout_s=5.0,
         on_timeout="secured",
-        guards=(G("lift", (C("thrust_left", "<", "thrust_left_n"),), 0.2),),
+        guards=(G("lift", (C("thrust_left", "<", "thrust_left_n"), C("uav_seen", ">", "half")), 0.2),),
     ),
     Phase(
         "lift",
@@ -74,7 +73,7 @@ TAKEOFF = (
         link="held",
         duration_s=1.5,
         timeout_s=4.0,
-        on_timeout="secured",
+        on_timeout="holding",
         guards=(G("carry_up", (C("progress", ">", "almost_one"), C("arm_share", ">", "share_carried")), 0.1),),
     ),
     Phase(
@@ -99,7 +98,8 @@ TAKEOFF = (
         uav="balance",
         magnet="on",
         held=True,
-        link="held",
+        # It flies by itself should the link be lost: it must know so before the magnet opens.
+        link="guided",
         observe=True,
         timeout_s=8.0,
         on_timeout="holding",
@@ -143,5 +143,5 @@ TAKEOFF = (
             ),
         ),
     ),
-    *(p if p.name != "done" else Phase("done", arm="hold", uav="station", final=True) for p in FINALS),
+    *TAKEOFF_FINALS,
 )

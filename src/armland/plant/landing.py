@@ -103,6 +103,8 @@ class LandingPlant:
         self._tau_max = np.abs(limits).min(axis=1)
         self._friction = self.scene.model.dof_frictionloss[self.scene.joint_dof].copy()
         self._solimp, self._braked = self.scene.model.dof_solimp[self.scene.joint_dof].copy(), 0
+        elbow = int(self.scene.model.dof_bodyid[self.scene.joint_dof[self.scene.joints // 2]])
+        self._bodies = {"uav": self.scene.uav_body, "tool": int(self._magnet_p["tool"][0]), "elbow": elbow}
         self.faults = FaultSchedule(scenario.landing.faults, PROCEDURES[start], scenario.demonstrator.run.rate_hz)
         self._tick = 0
 
@@ -150,6 +152,8 @@ class LandingPlant:
         m["magnet_force"] = self._magnet_s["report"]
         m["magnet_fault"] = self._magnet_s["fault"]
         t["touching"] = self._magnet_s["touching"]
+        if self.faults:
+            self.faults.corrupt(m)
 
     def _look(self, noise: Array, m: np.ndarray, t: np.ndarray) -> None:
         sample, (camera, marker), truth = self._sample, self._eye, t[0]
@@ -207,6 +211,8 @@ class LandingPlant:
             raise PlantError(f"command or state of tick {self._tick} are not finite numbers")
         magnet = int(tick.command["magnet"][0])
         energise(magnet, d.geom_xpos, d.geom_xmat, d.xipos, self._magnet_p, self._magnet_s, d.xfrc_applied)
+        if self.faults:
+            self.faults.push(d.xfrc_applied, self._bodies)
         mujoco.mj_step(self.scene.model, d)
         self._tick += 1
 

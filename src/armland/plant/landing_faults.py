@@ -4,6 +4,28 @@ import numpy as np
 
 from armland.errors import ConfigurationError
 from armland.mission.landing_scenario import Fault
+from armland.rotations import from_rotation_vector, multiply
+
+WRITTEN = (
+    "uplink_lost",
+    "downlink_lost",
+    "wrench_frozen",
+    "arm_stale",
+    "deaf",
+    "drift",
+    "force",
+    "torque",
+    "away",
+)
+"""What of the devices' state belongs to the faults, besides the rotors' health."""
+
+DEVICES = {
+    "encoders": ("q", "qd"),
+    "wrench": ("wrench",),
+    "attitude": ("uav_quat", "uav_rate"),
+    "camera": ("camera_position",),
+}
+"""Fields of the measurement that a device fills."""
 
 
 class FaultSchedule:
@@ -31,16 +53,19 @@ class FaultSchedule:
         """Back to the run's begin."""
         self._armed: list[int | None] = [0 if f.phase is None else None for f in self._faults]
         self.camera_frozen = self.camera_lost = False
+        self._acting: list[Fault] = []
+        self._turned = -1
 
     def __bool__(self) -> bool:
         return bool(self._faults)
 
     def apply(self, tick: int, phase: int, state: np.ndarray, magnet: np.ndarray, rated: float) -> None:
         """Write what fails at this tick into the devices' `state` and the `magnet`'s parameters, both (1,)."""
-        for name in ("uplink_lost", "downlink_lost", "wrench_frozen", "arm_stale", "deaf", "drift", "force", "away"):
+        for name in WRITTEN:
             state[name] = 0
         state["health"], magnet["health"], magnet["rated"] = 1.0, 1.0, rated
         self.camera_frozen = self.camera_lost = False
+        self._acting = []
         for i, fault in enumerate(self._faults):
             if self._armed[i] is None and fault.phase is not None and self._phases[phase] == fault.phase:
                 self._armed[i] = tick
@@ -49,7 +74,31 @@ class FaultSchedule:
                 continue
             since = (tick - armed) / self._rate - fault.after_s
             if 0.0 <= since < fault.lasts_s:
+                self._acting.append(fault)
                 self._act(fault, since, state, magnet)
+
+    def corrupt(self, measurement: np.ndarray) -> None:
+        """Put into `measurement` (1,) what the devices that fail would write; from the tick after `apply` on."""
+        for fault in self._acting:
+            if fault.kind == "non_finite":
+                for name in DEVICES[fault.device]:
+                    measurement[name] = np.nan
+            elif fault.kind == "encoder_offset":
+                measurement["q"][0, fault.joint - 1] += fault.size
+            elif fault.kind == "attitude_offset" and measurement["uav_tick"][0] != self._turned:
+                # The sample stays in the measurement until the next one arrives.
+                self._turned = int(measurement["uav_tick"][0])
+                turn = from_rotation_vector(fault.size * np.array(fault.direction))
+                measurement["uav_quat"][0] = multiply(turn, measurement["uav_quat"][0])
+
+    def push(self, xfrc_applied: np.ndarray, bodies: dict[str, int]) -> None:
+        """Add the pushes of this tick to MuJoCo's `xfrc_applied` (bodies, 6) in the rows that `bodies` names."""
+        if any(f.kind == "push" for f in self._faults):
+            # The rows of tool and UAV are written by others at every tick.
+            xfrc_applied[bodies["elbow"]] = 0.0
+        for fault in self._acting:
+            if fault.kind == "push":
+                xfrc_applied[bodies[fault.body], :3] += fault.size * np.array(fault.direction)
 
     def _act(self, fault: Fault, since: float, state: np.ndarray, magnet: np.ndarray) -> None:
         match fault.kind:
@@ -78,4 +127,6 @@ class FaultSchedule:
             case "overload":
                 state["force"][0, 2] = -fault.size
             case "unreachable":
-                state["deaf"], state["away"][0, 2] = 1, fault.size
+                state["deaf"], state["away"] = 1, fault.size * np.array(fault.direction)
+            case "twist":
+                state["torque"] = fault.size * np.array(fault.direction)
