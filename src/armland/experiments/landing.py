@@ -113,7 +113,8 @@ def run(setup: Setup, plant: LandingPlant, progress: Progress | None = None) -> 
                 if progress is not None:
                     progress(controller.phase, k / rate)
                 if controller.final:
-                    last = min(last, k + round(SETTLE_S * rate))
+                    # An end may lead on to a graver one, which is watched as long.
+                    last = min(len(rows), k + round(SETTLE_S * rate))
     finally:
         plant.stop()
     return rows[:k], time.perf_counter() - begin

@@ -138,9 +138,7 @@ class Branches:
     def _keep(self, k: int) -> None:
         name = self._controller.phase
         if name not in self.starts:
-            self.starts[name] = Start(
-                name, k, saved(self._plant), saved(self._controller), self._tick.buffer.copy()
-            )
+            self.starts[name] = Start(name, k, saved(self._plant), saved(self._controller), self._tick.buffer.copy())
 
     def _run(self, k: int, keep: bool = False) -> NDArray[np.void]:
         # Tick k is read and decided already; what is missing is its action.

@@ -4,7 +4,18 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from armland.mission.landing_arm import BACK_OFF, BRAKE, JOIN, TRACK, YIELD, arm_torque, begin_reference, held_force, refer, track
+from armland.mission.landing_arm import (
+    BACK_OFF,
+    BRAKE,
+    JOIN,
+    TRACK,
+    YIELD,
+    arm_torque,
+    begin_reference,
+    held_force,
+    refer,
+    track,
+)
 from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, look_at_grip, tilt_of
 from armland.mission.landing_uav import AUTONOMOUS, LEVEL, STATION, command_uav, thrust_in_force
 from armland.mission.phases import MAGNET, SIGNAL, SIGNALS, next_phase

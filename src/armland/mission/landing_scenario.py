@@ -65,7 +65,10 @@ class Fault(Section):
         description="drift in N/s, coil or magnet or rotor's share that is lost, load or push in N, twist in N·m, distance in m, "
         "offset in rad; not used by the others",
     )
-    direction: Vector3 = Field((0.0, 0.0, 1.0), description="of a push, the axis of a twist or of an attitude offset, or the way of an unreachable UAV, world")
+    direction: Vector3 = Field(
+        (0.0, 0.0, 1.0),
+        description="of a push, the axis of a twist or of an attitude offset, or the way of an unreachable UAV, world",
+    )
     device: Literal["encoders", "wrench", "attitude", "camera"] = Field(
         "encoders", description="whose samples are not finite"
     )
@@ -153,7 +156,9 @@ class Envelope(Section):
     camera_age_ms: Positive = 500.0
     arm_age_ms: Positive = 5.0
     wrench_age_ms: Positive = 20.0
-    slip_m: Positive = Field(0.010, description="offset of the held plate, as the camera sees it, that counts as slipped off")
+    slip_m: Positive = Field(
+        0.010, description="offset of the held plate, as the camera sees it, that counts as slipped off"
+    )
     tilt_deg: Positive = Field(30.0, description="tilt of the UAV at which it counts as out of control")
 
 

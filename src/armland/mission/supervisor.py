@@ -2,7 +2,8 @@
 
 The fault table says for each fault and each kind of phase in which final phase the mission ends; what arm, UAV and magnet do
 there stands in `finals.FINALS`. Kinds of phases: `ground` (nobody flies on the ground's word), `flight` (the UAV flies guided,
-nothing touches), `touch` (the magnet works on the plate, the rotors carry), `held` (the arm carries), `cradle` (the rails carry, the mission is nearly over), `grip` (the rails carry, it has hardly begun).
+nothing touches), `touch` (the magnet works on the plate, the rotors carry), `held` (the arm carries), `cradle` (the rails carry,
+the landing is nearly over), `grip` (the rails carry, the take-off has hardly begun).
 A fault that comes when the mission has ended already may lead on to a graver end, see `ESCALATION`.
 
 | limit, in this order | what is cut |

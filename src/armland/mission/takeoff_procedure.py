@@ -15,7 +15,7 @@ TAKEOFF = (
         free=True,
         on_timeout="refused",
         guards=(
-            G("reach", (C("magnet_ready", ">", "half"), C("bias_known", ">", "half")), 0.2),
+            G("reach", (C("magnet_ready", ">", "half"), C("bias_known", ">", "half"), C("uav_seen", ">", "half")), 0.2),
         ),
     ),
     Phase(
