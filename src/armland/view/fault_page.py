@@ -84,7 +84,8 @@ def static_part() -> str:
     for p in FINALS:
         on = ", ".join(f"`{f}` to `{e}`" for f, e in ESCALATION.get(p.name, {}).items()) or "-"
         parts.append(f"| `{p.name}` | {STANDING[p.name]} | {GRAVITY_OF[p.name]} | {on} |")
-    return "\n".join([*parts, ""])
+    parts += ["", "A take-off that is `done` flies guided still and is watched as in `flight`.", ""]
+    return "\n".join(parts)
 
 
 def signs() -> dict[str, str]:
