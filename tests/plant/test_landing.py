@@ -214,3 +214,8 @@ def test_uav_says_when_it_heard_the_newest_command():
     m, _ = Bench(faults=[{"kind": "uplink_loss", "after_s": 0.3}]).run(1000)
     assert 290 <= m["uav_heard"] <= 330
     assert m["tick"] - m["uav_tick"] < 20
+
+
+def test_fault_of_a_joint_that_is_not_there_is_refused():
+    with pytest.raises(ConfigurationError, match="joint 8 does not exist; the arm has joints 1 to 7"):
+        Bench(faults=[{"kind": "encoder_offset", "joint": 8}])

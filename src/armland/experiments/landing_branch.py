@@ -122,7 +122,7 @@ class Branches:
         restore(self._controller, start.controller)
         self._tick.buffer[...] = start.buffer
         self._plant._brake(bool(self._plant._braked))
-        self._plant.faults = FaultSchedule(faults, PROCEDURES[self._begin], self.rate)
+        self._plant.faults = FaultSchedule(faults, PROCEDURES[self._begin], self.rate, self.setup.arm.joints)
         self._rows[: start.tick] = self.records[: start.tick]
         rows = next(t for t in self._controller._tables if isinstance(t, np.ndarray) and t.shape[0] == len(FAULTS))
         seen = rows.copy()

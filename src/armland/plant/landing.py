@@ -105,7 +105,9 @@ class LandingPlant:
         self._solimp, self._braked = self.scene.model.dof_solimp[self.scene.joint_dof].copy(), 0
         elbow = int(self.scene.model.dof_bodyid[self.scene.joint_dof[self.scene.joints // 2]])
         self._bodies = {"uav": self.scene.uav_body, "tool": int(self._magnet_p["tool"][0]), "elbow": elbow}
-        self.faults = FaultSchedule(scenario.landing.faults, PROCEDURES[start], scenario.demonstrator.run.rate_hz)
+        self.faults = FaultSchedule(
+            scenario.landing.faults, PROCEDURES[start], scenario.demonstrator.run.rate_hz, self.scene.joints
+        )
         self._tick = 0
 
     def connect(self) -> None:

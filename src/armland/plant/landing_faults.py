@@ -35,17 +35,21 @@ class FaultSchedule:
         faults: what fails.
         phases: names of the mission's phases, in the order of the numbers that `apply` gets.
         rate_hz: base rate.
+        joints: of the arm.
 
     Raises:
-        ConfigurationError: a fault in a phase that the mission does not have.
+        ConfigurationError: a fault in a phase that the mission does not have, or of a joint that the arm does not have.
 
     A fault is armed when its phase first begins (or the run does) and acts from `after_s` on for `lasts_s`.
     """
 
-    def __init__(self, faults: tuple[Fault, ...], phases: tuple[str, ...], rate_hz: int) -> None:
+    def __init__(self, faults: tuple[Fault, ...], phases: tuple[str, ...], rate_hz: int, joints: int) -> None:
         unknown = sorted({f.phase for f in faults if f.phase is not None} - set(phases))
         if unknown:
             raise ConfigurationError(f"faults: no phase {unknown}; the mission's phases are {', '.join(phases)}")
+        beyond = [f.joint for f in faults if f.joint > joints]
+        if beyond:
+            raise ConfigurationError(f"faults: joint {beyond[0]} does not exist; the arm has joints 1 to {joints}")
         self._faults, self._phases, self._rate = faults, phases, rate_hz
         self.reset()
 
