@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from armland.errors import ConfigurationError, WorkspaceError
-from armland.mission.landing_arm import BACK_OFF, CLOSE, HOLD, JOIN, MOVE, TRACK, refer, septic
+from armland.mission.landing_arm import BACK_OFF, CLOSE, HOLD, JOIN, MOVE, TRACK, refer, septic, track
 from armland.mission.landing_estimate import quaternion_of
 from armland.mission.landing_scenario import landing_scenario
 from armland.mission.landing_setup import set_up
@@ -152,3 +152,19 @@ def test_refusals_before_anything_moves(overrides, refusal, words):
 def test_unknown_scenario_is_refused():
     with pytest.raises(ConfigurationError, match="does not exist"):
         landing_scenario("nowhere")
+
+
+@pytest.mark.parametrize(("valid", "way"), [(1, 0.3), (0, 0.0)])
+def test_plate_is_followed_only_while_somebody_vouches_for_it(valid, way):
+    p, s = records()
+    p["track"], p["track_a"] = 12.0, 3.0
+    e = np.zeros(1, landing_layout("estimate", 7))
+    e["plate"], e["plate_valid"] = s["p"], valid
+    e["plate"][0, 0] += 0.3
+    start = s["p"].copy()
+    for _ in range(3000):
+        track(e[0], p[0], s[0], False)
+    # Without one it comes to rest: v / (2 track) further.
+    rest = way if valid else 0.02 / 24.0
+    assert s["p"][0, 0] - start[0, 0] == pytest.approx(rest, abs=1e-3)
+    assert np.abs(s["pv"]).max() < 1e-3

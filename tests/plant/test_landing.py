@@ -154,3 +154,68 @@ def test_command_that_is_not_finite_is_refused(field):
 def test_fault_in_an_unknown_phase_is_refused():
     with pytest.raises(ConfigurationError, match=r"no phase \['lunch'\]"):
         Bench(faults=[{"kind": "link_loss", "phase": "lunch"}])
+
+
+@pytest.mark.parametrize(
+    ("device", "field"),
+    [
+        ("encoders", "q"),
+        ("encoders", "qd"),
+        ("wrench", "wrench"),
+        ("attitude", "uav_quat"),
+        ("camera", "camera_position"),
+    ],
+)
+def test_device_that_fails_sends_no_numbers(device, field):
+    bench = Bench(faults=[{"kind": "non_finite", "device": device, "after_s": 0.1}])
+    assert np.isfinite(bench.run(90)[0][field]).all()
+    assert np.isnan(bench.run(20)[0][field]).all()
+
+
+def test_encoder_that_is_off_shows_in_one_joint():
+    m, _ = Bench(faults=[{"kind": "encoder_offset", "joint": 2, "size": 0.1, "after_s": 0.1}], noise=False).run(150)
+    np.testing.assert_allclose(m["q"] - HOME, [0, 0.1, 0, 0, 0, 0, 0], atol=2e-3)
+
+
+def test_reported_attitude_is_turned_once_and_the_uav_is_not():
+    fault = {"kind": "attitude_offset", "size": 0.5, "direction": [1.0, 0.0, 0.0], "after_s": 0.1}
+    m, truth = Bench(faults=[fault], noise=False).run(400)
+    assert angle(multiply(m["uav_quat"], conjugate(truth["quat"]))) == pytest.approx(0.5, abs=0.02)
+    assert abs(truth["quat"][0]) > 0.99
+
+
+def test_push_on_the_tool_is_felt_and_on_the_elbow_is_not():
+    def change(body):
+        bench = Bench(faults=[{"kind": "push", "body": body, "size": 20.0, "after_s": 0.3}], noise=False)
+        return bench.run(299)[0]["wrench"][2], bench.run(60)[0]["wrench"][2]
+
+    before, after = change("tool")
+    assert after - before == pytest.approx(-20.0, abs=2.0)
+    before, after = change("elbow")
+    assert abs(after - before) < 3.0
+
+
+def test_push_ends_when_the_fault_does():
+    bench = Bench(faults=[{"kind": "push", "body": "elbow", "size": 50.0, "after_s": 0.1, "lasts_s": 0.05}])
+    bench.run(120)
+    assert np.abs(bench.plant.data.xfrc_applied[bench.plant._bodies["elbow"]]).max() == 50.0
+    bench.run(60)
+    assert not bench.plant.data.xfrc_applied[bench.plant._bodies["elbow"]].any()
+
+
+def test_twist_turns_the_uav():
+    fault = {"kind": "twist", "size": 0.2, "direction": [0.0, 0.0, 1.0], "after_s": 0.1}
+    assert Bench(faults=[fault]).run(200)[1]["omega"][2] > 0.3
+    assert abs(Bench().run(200)[1]["omega"][2]) < 0.1
+
+
+def test_uav_says_when_it_heard_the_newest_command():
+    assert 20 <= Bench().run(500)[0]["uav_heard"].item() - 400 <= 99
+    m, _ = Bench(faults=[{"kind": "uplink_loss", "after_s": 0.3}]).run(1000)
+    assert 290 <= m["uav_heard"] <= 330
+    assert m["tick"] - m["uav_tick"] < 20
+
+
+def test_fault_of_a_joint_that_is_not_there_is_refused():
+    with pytest.raises(ConfigurationError, match="joint 8 does not exist; the arm has joints 1 to 7"):
+        Bench(faults=[{"kind": "encoder_offset", "joint": 8}])

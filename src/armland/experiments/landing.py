@@ -164,7 +164,7 @@ class _Watch:
 
     def __iter__(self) -> Iterator[int]:
         phase, rate, now, k = self._phase, self._rate, -1, 0
-        last = round(self._controller.setup.scenario.landing.duration_s * rate)
+        last = total = round(self._controller.setup.scenario.landing.duration_s * rate)
         while k < last:
             yield k
             k += 1
@@ -175,7 +175,8 @@ class _Watch:
                 if self._progress is not None:
                     self._progress(self._controller.phase, k / rate)
                 if self._controller.final:
-                    last = min(last, k + round(SETTLE_S * rate))
+                    # An end may lead on to a graver one, which is watched as long.
+                    last = min(total, k + round(SETTLE_S * rate))
 
 
 def campaign(

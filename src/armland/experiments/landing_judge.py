@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from armland.mission.landing_setup import Setup
+from armland.mission.remedies import stopped
 from armland.mission.supervisor import FAULTS
 from armland.rotations import Array
 
@@ -200,9 +201,10 @@ def _stopped(records: NDArray[np.void], setup: Setup, end: str) -> str:
     fault = FAULTS[int(records["mission"]["fault"][-1])]
     if not setup.phases[setup.table.names.index(end)].final:
         return f"still in phase {end} when the time was over"
-    phase = records["mission"]["phase"]
-    before = setup.table.names[int(phase[np.flatnonzero(np.diff(phase))[-1]])]
-    return f"ended in {end} after {before}" + (f": {fault}" if fault != "none" else "")
+    names, phase = setup.table.names, records["mission"]["phase"]
+    # An end that a second fault has led on from is no phase of the mission.
+    flown = [int(k) for k in phase[np.flatnonzero(np.diff(phase))] if not setup.phases[int(k)].final]
+    return stopped(end, names[flown[-1]], fault)
 
 
 def _capture(records: NDArray[np.void]) -> dict[str, float | None]:

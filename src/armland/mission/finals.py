@@ -3,21 +3,33 @@
 from armland.mission.phases import Phase
 
 FINALS = (
-    Phase("done", arm="hold", uav="off", final=True),
-    Phase("refused", arm="hold", uav="autonomous", final=True),
-    Phase("abort", arm="back_off", uav="autonomous", duration_s=1.0, final=True),
-    Phase("holding", arm="hold", uav="level", magnet="on", link="held", final=True),
-    Phase("hanging", arm="hold", uav="off", magnet="on", link="held", final=True),
-    Phase("let_fly", arm="hold", uav="autonomous", final=True),
-    Phase("secured", arm="yield", uav="ramp", share=0.0, magnet="on", link="landed", final=True),
-    Phase("braked_free", arm="brake", uav="autonomous", final=True),
-    Phase("braked_held", arm="brake", uav="level", magnet="on", link="held", final=True),
-    Phase("braked_down", arm="brake", uav="ramp", share=0.0, magnet="on", link="landed", final=True),
+    Phase("done", kind="end", arm="hold", uav="off", final=True),
+    Phase("refused", kind="end", arm="hold", uav="autonomous", final=True),
+    Phase("abort", kind="end", arm="back_off", uav="autonomous", duration_s=1.0, final=True),
+    Phase("holding", kind="end", arm="hold", uav="level", magnet="on", link="held", final=True),
+    Phase("hanging", kind="end", arm="hold", uav="off", magnet="on", link="held", final=True),
+    Phase("let_fly", kind="end", arm="back_off", uav="autonomous", duration_s=1.0, final=True),
+    Phase("secured", kind="end", arm="yield", uav="ramp", share=0.0, magnet="on", link="landed", final=True),
+    Phase("braked_refused", kind="end", arm="brake", uav="autonomous", final=True),
+    Phase("braked_free", kind="end", arm="brake", uav="autonomous", final=True),
+    Phase("braked_held", kind="end", arm="brake", uav="level", magnet="on", link="held", final=True),
+    Phase("braked_down", kind="end", arm="brake", uav="ramp", share=0.0, magnet="on", link="landed", final=True),
 )
-"""Ends: reached the goal, or one of the safe states. Below each, the arm's part, the UAV's and the magnet's.
+"""Ends of a landing: reached the goal, or one of the safe states. Below each, the arm's part, the UAV's and the magnet's.
 
 `abort`: the arm draws back and holds, the UAV flies by itself. `holding`: the arm holds the UAV, which stays level with the
 thrust it has: without it, it would topple over its hinge. `hanging`: the arm holds a UAV that cannot stay level, rotors stopped.
-`let_fly`: the magnet has lost its grip, so the UAV gets its thrust back.
+`let_fly`: the magnet has lost its grip, so the UAV gets its thrust back and the arm makes room.
 `secured`: the UAV stands on the cradle, the arm gives way, the magnet stays on. `braked_…`: the arm's brakes are on.
+`refused`, `braked_refused`: nothing has begun, the UAV does what it did before.
 """
+
+TAKEOFF_FINALS = tuple(
+    p._replace(uav="off")
+    if p.name in ("refused", "braked_refused")
+    else p._replace(kind="flight", uav="station")
+    if p.name == "done"
+    else p
+    for p in FINALS
+)
+"""Ends of a take-off: the UAV that is refused stays off; the one that has taken off flies guided, and is watched like one."""

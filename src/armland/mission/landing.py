@@ -5,17 +5,20 @@ from numba import njit
 from numpy.typing import NDArray
 
 from armland.mission.landing_arm import (
+    BACK_OFF,
     BRAKE,
     JOIN,
     LAUNCH,
     LEAVE,
+    TRACK,
+    YIELD,
     arm_torque,
     begin_reference,
     held_force,
     refer,
     track,
 )
-from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, tilt_of
+from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, look_at_grip, tilt_of
 from armland.mission.landing_uav import AUTONOMOUS, BALANCE, CRUISE, LEVEL, STATION, command_uav, thrust_in_force
 from armland.mission.phase_table import next_phase
 from armland.mission.phases import MAGNET, SIGNAL, SIGNALS
@@ -117,13 +120,21 @@ def enter(
 
 @njit(cache=True)
 def load_expected(phase: Record, elapsed: float, e: Record, p: Record, s: Record) -> float:
-    """Vertical hinge force, N, that load and thrust explain, where they do; else NaN."""
-    if phase.free:
+    """Vertical hinge force, N, that load and thrust explain, where they do; else NaN.
+
+    None where the arm follows the plate from below, where it has had the time to learn the sensor's bias or to draw back, and
+    where it has had the time to give way; what the rotors leave where the arm carries and the cradle cannot.
+    """
+    if phase.arm == TRACK:
+        return 0.0
+    if phase.arm == YIELD:
+        return 0.0 if elapsed > 0.5 else np.nan
+    if phase.free or phase.arm == BACK_OFF:
         return 0.0 if elapsed > 1.0 else np.nan
     if phase.uav == BALANCE:
         # What carries the weight is being found out: until then it is the thrust that was asked for.
         return float(p.weight - e.thrust)
-    if phase.held and phase.observe:
+    if phase.held and (phase.observe or e.r[2] > p.clear_z):
         return float(p.weight * (1.0 - e.thrust / max(s.hover, 1e-3)))
     return np.nan
 
@@ -200,11 +211,13 @@ def landing_tick(
     e.thrust = thrust_in_force(now, p, s)
     estimate_arm(m, arm, e)
     # Where arm or cradle carry, they take what the rotors leave: nothing accelerates much.
-    flies = row.uav == AUTONOMOUS or row.uav == STATION or row.uav == LEVEL or row.uav == CRUISE
+    flies = row.uav == AUTONOMOUS or row.uav == STATION or row.uav == CRUISE
+    flies = flies or (row.uav == LEVEL and row.magnet != MAGNET_ON)
     lift = e.thrust * p.weight / max(s.hover, 1e-3) if flies else p.weight
     push = known_push(row.arm, held, t.reference, p)
     estimate_plate(m, arm, p.camera.copy(), lift, push, sample, filter_p, filter_s, plate, e)
     s.seen = 1 if e.plate_valid else s.seen
+    look_at_grip(m, p, filter_p[0].marker_offset, filter_p[0].marker_quat, s)
     way = signals[S_RETREAT]
     estimate_load(
         m,
@@ -220,17 +233,18 @@ def landing_tick(
         load,
         e,
     )
+    known = now - m.wrench_tick <= p.wrench_age
     for i in range(3):
         e.disturbance[i] = s.d[i]
+        # A force that is not known gives way to nothing.
+        e.hinge_force[i] = e.hinge_force[i] if known else 0.0
     # Mission.
     elapsed = (now - s.begin) * p.tick_s
     signals_of(row, t.mission.progress, elapsed, load[0].contact, wrench_s[0].blocks, t, p, s, signals)
-    magnet_on = c.magnet == MAGNET_ON and elapsed > COIL_S
+    magnet_on = (c.magnet == MAGNET_ON and elapsed > COIL_S) or row.magnet == MAGNET_TEST
     expected = load_expected(row, elapsed, e, p, s)
-    fault = 0
-    if not row.final:
-        matters = rows[:, s.phase].copy()
-        fault = find_fault(bad, magnet_on, expected, row.force, m, e, t.health, p, s, debounce, matters)
+    matters = rows[:, s.phase].copy()
+    fault = find_fault(bad, magnet_on, expected, row.force, m, e, t.health, p, s, debounce, matters)
     new = rows[fault, s.phase] if fault else next_phase(s.phase, elapsed, signals, phases, guards, conditions, counts)
     if fault:
         s.fault = fault
@@ -252,5 +266,9 @@ def landing_tick(
     if held:
         held_force(e, t.reference, p, s, row.observe == 1)
     arm_torque(held, m, e, t.reference, p, arm, s, c)
+    if row.arm == BRAKE:
+        # What the last good sample says that holds it, should a brake let go; no law runs on it.
+        for i in range(m.q.shape[0]):
+            c.tau[i] = arm.gravity[i]
     command_uav(now, row.uav, row.share, row.link, filter_s[0].align.quat.copy(), e, p, s, c)
     limit(bad, arm.gravity, m, e, p, s, c, t.health)

@@ -46,7 +46,10 @@ def track(e: Record, p: Record, s: Record, fresh_start: bool) -> None:
         if fresh_start:
             s.p[i], s.pv[i], s.pa[i] = e.plate[i], e.plate_v[i], 0.0
             continue
-        a = e.plate_a[i] + 2.0 * p.track * (e.plate_v[i] - s.pv[i]) + p.track**2 * (e.plate[i] - s.p[i])
+        # A plate that nobody vouches for is not followed: the reference comes to rest.
+        a = -2.0 * p.track * s.pv[i]
+        if e.plate_valid:
+            a = e.plate_a[i] + 2.0 * p.track * (e.plate_v[i] - s.pv[i]) + p.track**2 * (e.plate[i] - s.p[i])
         a = min(max(a, -p.track_a), p.track_a)
         s.pa[i] = a
         s.pv[i] += a * p.tick_s

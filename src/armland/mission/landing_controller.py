@@ -45,7 +45,7 @@ class LandingController:
             np.zeros(1, CONTACT_MEMORY),
             np.zeros(1, LOAD),
         )
-        rows = fault_rows(tuple("" if p.final else p.kind for p in setup.phases), table.names)
+        rows = fault_rows(setup.phases)
         miss = table.names.index("miss") if "miss" in table.names else -1
         self._tables = (
             table.phases,

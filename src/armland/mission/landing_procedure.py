@@ -15,7 +15,6 @@ LANDING = (
         free=True,
         on_timeout="refused",
         guards=(
-            G("refused", (C("magnet_fault", ">", "half"),)),
             G("guide", (C("magnet_ready", ">", "half"), C("bias_known", ">", "half"), C("uav_seen", ">", "half")), 0.2),
         ),
     ),
@@ -81,7 +80,8 @@ LANDING = (
         share=1.0,
         magnet="on",
         held=True,
-        link="held",
+        # Until the arm carries, a UAV without link flies by itself.
+        link="guided",
         timeout_s=1.5,
         on_timeout="miss",
         guards=(

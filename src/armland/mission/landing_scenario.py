@@ -3,57 +3,14 @@
 import json
 from copy import deepcopy
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 from pydantic import Field, ValidationError, model_validator
 
 from armland.config import SCENARIOS, load_scenario, problem, read_toml, update
 from armland.errors import ConfigurationError
+from armland.mission.failures import Fault
 from armland.scenario import Finite, NonNegative, Positive, Positive3, Scenario, Section, Vector3
-
-FAULTS = (
-    "link_loss",
-    "uplink_loss",
-    "downlink_loss",
-    "camera_frozen",
-    "camera_lost",
-    "wrench_frozen",
-    "wrench_drift",
-    "arm_stale",
-    "magnet_coil",
-    "magnet_slip",
-    "rotor_loss",
-    "overload",
-    "unreachable",
-)
-"""What can be made to fail in the plant."""
-
-
-class Fault(Section):
-    """One failure: when it begins, how long it lasts, how bad it is."""
-
-    kind: Literal[
-        "link_loss",
-        "uplink_loss",
-        "downlink_loss",
-        "camera_frozen",
-        "camera_lost",
-        "wrench_frozen",
-        "wrench_drift",
-        "arm_stale",
-        "magnet_coil",
-        "magnet_slip",
-        "rotor_loss",
-        "overload",
-        "unreachable",
-    ]
-    phase: str | None = Field(None, description="phase at whose begin it is armed; the run's begin if absent")
-    after_s: NonNegative = Field(0.0, description="time from there")
-    lasts_s: Positive = Field(1e6, description="how long it lasts")
-    size: Finite = Field(
-        1.0,
-        description="drift in N/s, coil or magnet or rotor's share that is lost, load in N, distance in m; not used by the others",
-    )
 
 
 class Place(Section):
@@ -169,6 +126,9 @@ class Envelope(Section):
     camera_age_ms: Positive = 500.0
     arm_age_ms: Positive = 5.0
     wrench_age_ms: Positive = 20.0
+    slip_m: Positive = Field(
+        0.010, description="offset of the held plate, as the camera sees it, that counts as slipped off"
+    )
     tilt_deg: Positive = Field(30.0, description="tilt of the UAV at which it counts as out of control")
 
 

@@ -159,5 +159,6 @@ def _supervisor(p: NDArray[np.void], landing: Landing, rate: int) -> None:
     )
     p["arm_age"], p["wrench_age"] = round(v.arm_age_ms * rate / 1000), round(v.wrench_age_ms * rate / 1000)
     p["hinge_max"] = v.hinge_force_share * landing.magnet_rating_n
-    p["tilt_max"], p["slip"] = np.deg2rad(v.tilt_deg), 0.02
+    p["tilt_max"], p["slip"] = np.deg2rad(v.tilt_deg), v.slip_m
     p["rated"], p["magnet_share"], p["free_tolerance"] = landing.magnet_rating_n, 0.9, 2.5
+    p["clear_z"] = landing.place.put_down_m[2] + 0.01

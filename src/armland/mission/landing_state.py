@@ -82,6 +82,7 @@ def parameters_layout(joints: int, phases: int) -> np.dtype:
             ("rated", "f8"),  # N
             ("magnet_share", "f8"),
             ("free_tolerance", "f8"),  # N
+            ("clear_z", "f8"),  # m, height of the end effector above which the cradle carries nothing
         ]
     )
 
@@ -125,5 +126,7 @@ def memory_layout(joints: int) -> np.dtype:
             ("counts", "i8", (16,)),  # ticks for which each fault's sign has been seen
             ("sigma", "f8"),
             ("seen", "i8"),  # 1 once the plate has been seen
+            ("grip_offset", "f8"),  # m, of the plate's pivot from the end effector, in the newest image
+            ("grip_tick", "i8"),  # that image's exposure
         ]
     )

@@ -1,6 +1,6 @@
 """The take-off that gives the UAV a speed: `TAKEOFF` up to the hand-over, then run-up, release in motion, leave."""
 
-from armland.mission.finals import FINALS
+from armland.mission.finals import TAKEOFF_FINALS
 from armland.mission.landing_scenario import Landing
 from armland.mission.phases import CARRIED_N, Condition, Guard, Phase
 from armland.mission.takeoff_procedure import TAKEOFF
@@ -70,7 +70,7 @@ LAUNCH = (
         on_timeout="done",
         guards=(G("done", (C("elapsed", ">", "flown_s"),)),),
     ),
-    *(p if p.name != "done" else Phase("done", arm="hold", uav="autonomous", final=True) for p in FINALS),
+    *(p if p.name != "done" else p._replace(kind="end", uav="autonomous") for p in TAKEOFF_FINALS),
 )
 
 

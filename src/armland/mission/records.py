@@ -17,6 +17,7 @@ LANDING_MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("arm_tick", (), "ms", "-", "tick at which the joints were sampled", "i8"),
         Field("wrench_tick", (), "ms", "-", "tick at which the force-torque sensor was sampled", "i8"),
         Field("uav_tick", (), "ms", "-", "tick at which the UAV took the sample that arrived last", "i8"),
+        Field("uav_heard", (), "ms", "-", "tick at which the newest command had reached it by then", "i8"),
         Field("camera_fresh", (), "1", "-", "1 where a camera sample arrived in this tick", "i8"),
         Field("camera_capture", (), "ms", "-", "tick of that sample's exposure", "i8"),
         Field("magnet_fault", (), "1", "-", "1 where the coil's current did not rise as it should", "i8"),

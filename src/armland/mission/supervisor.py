@@ -2,7 +2,9 @@
 
 The fault table says for each fault and each kind of phase in which final phase the mission ends; what arm, UAV and magnet do
 there stands in `finals.FINALS`. Kinds of phases: `ground` (nobody flies on the ground's word), `flight` (the UAV flies guided,
-nothing touches), `touch` (the magnet works on the plate, the rotors carry), `held` (the arm carries), `cradle` (the rails carry).
+nothing touches), `touch` (the magnet works on the plate, the rotors carry), `held` (the arm carries), `cradle` (the rails carry,
+the landing is nearly over), `grip` (the rails carry, the take-off has hardly begun).
+A fault that comes when the mission has ended already may lead on to a graver end, see `ESCALATION`.
 
 | limit, in this order | what is cut |
 |---|---|
@@ -16,6 +18,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from armland.mission.phases import Phase
 from armland.mission.records import Limit
 from armland.records import Record
 from armland.rotations import Array
@@ -36,28 +39,57 @@ FAULTS = (
 )
 """What the supervisor can find, the gravest first."""
 
-KINDS = ("ground", "flight", "touch", "held", "cradle")
+KINDS = ("ground", "flight", "touch", "held", "cradle", "grip")
 
 FAULT_TABLE: dict[str, dict[str, str]] = {
-    "non_finite": {"ground": "refused", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "secured"},
-    "arm_stale": {
-        "ground": "braked_free",
-        "flight": "braked_free",
-        "touch": "braked_free",
-        "held": "braked_held",
-        "cradle": "braked_down",
-    },
-    "uav_silent": {"ground": "refused", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "-"},
-    "camera_stale": {"ground": "-", "flight": "abort", "touch": "abort", "held": "-", "cradle": "-"},
-    "wrench_stale": {"ground": "refused", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "secured"},
-    "wrench_drift": {"ground": "refused", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "secured"},
-    "magnet_coil": {"ground": "refused", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "-"},
-    "slip": {"ground": "-", "flight": "-", "touch": "-", "held": "let_fly", "cradle": "-"},
-    "overload": {"ground": "-", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "secured"},
-    "uav_tilt": {"ground": "-", "flight": "abort", "touch": "abort", "held": "hanging", "cradle": "secured"},
-    "near_limit": {"ground": "refused", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "secured"},
+    fault: dict(zip(KINDS, row.split(), strict=True))
+    for fault, row in {
+        #              ground         flight      touch       held        cradle      grip
+        "non_finite": "refused        abort       abort       holding     secured     secured",
+        "arm_stale": " braked_refused braked_free braked_free braked_held braked_down braked_down",
+        "uav_silent": "refused        abort       abort       holding     secured     secured",
+        "camera_stale": "refused      abort       abort       -           -           secured",
+        "wrench_stale": "refused      abort       abort       holding     secured     secured",
+        "wrench_drift": "refused      abort       -           holding     secured     secured",
+        "magnet_coil": "refused       -           abort       holding     -           secured",
+        "overload": "  refused        abort       abort       holding     secured     secured",
+        "uav_tilt": "  refused        abort       abort       hanging     secured     secured",
+        "slip": "      -              -           -           let_fly     -           -",
+        "near_limit": "braked_refused braked_free braked_free braked_held braked_down braked_down",
+    }.items()
 }
-"""Fault × kind of phase -> final phase; `-` where the fault does not matter there."""
+"""Fault × kind of phase -> final phase; `-` where the fault does not matter there.
+
+Near a joint's end, near a singularity and beyond the joints' speed no law of the end effector is defined: the brakes are.
+"""
+
+ESCALATION: dict[str, dict[str, str]] = {
+    "done": {"arm_stale": "braked_down"},
+    "refused": {"arm_stale": "braked_refused"},
+    "abort": {"arm_stale": "braked_free"},
+    "let_fly": {"arm_stale": "braked_free"},
+    "holding": {"arm_stale": "braked_held", "uav_tilt": "hanging", "slip": "let_fly"},
+    "hanging": {"arm_stale": "braked_held"},
+    "secured": {"arm_stale": "braked_down"},
+    "braked_held": {"slip": "braked_free"},
+}
+"""Final phase × second fault -> graver final phase; whatever is not here changes nothing."""
+
+GRAVITY_OF = {
+    "done": 0,
+    "refused": 1,
+    "abort": 1,
+    "holding": 1,
+    "secured": 1,
+    "hanging": 2,
+    "let_fly": 2,
+    "braked_refused": 3,
+    "braked_held": 3,
+    "braked_down": 3,
+    "braked_free": 4,
+}
+"""How little authority each end leaves the ground: over arm, UAV and grip; over arm and one of them; over grip and UAV with the
+arm braked; over nothing. Escalation only ever goes up, so it ends."""
 
 (
     NONE,
@@ -74,7 +106,7 @@ FAULT_TABLE: dict[str, dict[str, str]] = {
     NEAR_LIMIT,
 ) = range(len(FAULTS))
 
-DEBOUNCE_TICKS = (0, 20, 1, 1, 1, 1, 300, 20, 3, 40, 100, 20)
+DEBOUNCE_TICKS = (0, 20, 1, 1, 1, 1, 300, 20, 3, 40, 50, 20)
 """Ticks for which each fault's sign must be seen. Ages are debounced by themselves."""
 
 L_POSITION, L_SPEED, L_TORQUE, L_RATE, L_SINGULAR, L_FORCE, L_FINITE = (
@@ -87,21 +119,28 @@ L_POSITION, L_SPEED, L_TORQUE, L_RATE, L_SINGULAR, L_FORCE, L_FINITE = (
     Limit.NON_FINITE,
 )
 
+SEEN_S = 0.15
+"""Age, since the exposure, up to which an image says where the plate is on the magnet: its delay and two images lost."""
+
+LOAD_N, LOAD_LEFT = 1.0, 0.3
+"""A load of this much, of which less than that share is felt, is gone."""
+
 DAMPER = 20.0
 """N·m·s/rad that replaces a torque which is cut."""
 
 
-def fault_rows(kinds: tuple[str, ...], names: tuple[str, ...]) -> np.ndarray:
+def fault_rows(phases: tuple[Phase, ...]) -> np.ndarray:
     """Final phase (faults, phases) by index for each fault in each phase; −1 where the fault does not matter.
 
     Args:
-        kinds: kind of each phase, `` for final ones.
-        names: name of each phase.
+        phases: of a mission, its ends included.
     """
-    rows = np.full((len(FAULTS), len(kinds)), -1, dtype=np.int64)
+    names = [p.name for p in phases]
+    rows = np.full((len(FAULTS), len(phases)), -1, dtype=np.int64)
     for f, fault in enumerate(FAULTS):
-        for k, kind in enumerate(kinds):
-            target = FAULT_TABLE.get(fault, {}).get(kind, "-")
+        for k, p in enumerate(phases):
+            row = ESCALATION.get(p.name, {}) if p.kind == "end" else FAULT_TABLE.get(fault, {})
+            target = row.get(fault if p.kind == "end" else p.kind, "-")
             if target != "-":
                 rows[f, k] = names.index(target)
     return rows
@@ -137,22 +176,27 @@ def find_fault(
         matters: (faults,) −1 where the fault does not matter.
     """
     force = np.sqrt(e.hinge_force[0] ** 2 + e.hinge_force[1] ** 2 + e.hinge_force[2] ** 2)
-    apart = 0.0
-    for i in range(3):
-        apart += (e.plate[i] - e.r[i]) ** 2
     up = 1.0 - 2.0 * (e.quat[1] ** 2 + e.quat[2] ** 2)
     signs = np.zeros(len(FAULTS), np.bool_)
     signs[NON_FINITE] = bad > 0
     signs[ARM_STALE] = m.tick - m.arm_tick > p.arm_age
-    signs[UAV_SILENT] = m.tick - m.uav_tick > p.uav_age
+    # Both ways: what it says arrives, and it has heard what was said to it.
+    signs[UAV_SILENT] = m.tick - min(m.uav_tick, m.uav_heard) > p.uav_age
     signs[CAMERA_STALE] = s.seen == 1 and e.plate_age > p.camera_age
     signs[WRENCH_STALE] = m.tick - m.wrench_tick > p.wrench_age
     signs[WRENCH_DRIFT] = abs(e.hinge_force[2] - expected) > p.free_tolerance
     signs[MAGNET_COIL] = magnet_on and m.magnet_fault == 1
-    signs[SLIP] = e.plate_valid == 1 and apart > p.slip**2
+    if signs[UAV_SILENT]:
+        # It could not be given its thrust back: it is better off lying on the magnet.
+        signs[SLIP] = False
+    elif (m.tick - s.grip_tick) * p.tick_s < SEEN_S:
+        signs[SLIP] = s.grip_offset > p.slip
+    else:
+        # Nobody sees it: what the arm should carry is not there.
+        signs[SLIP] = expected > LOAD_N and force < LOAD_LEFT * expected
     signs[OVERLOAD] = force > min(force_max, p.hinge_max)
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
-    signs[NEAR_LIMIT] = h.joint_margin < p.joint_margin or s.sigma < p.sigma_min
+    signs[NEAR_LIMIT] = h.joint_margin < p.joint_margin or s.sigma < p.sigma_min or h.speed_ratio > p.speed_share
     for f in range(1, len(FAULTS)):
         s.counts[f] = s.counts[f] + 1 if signs[f] else 0
         if matters[f] >= 0 and s.counts[f] >= debounce[f]:

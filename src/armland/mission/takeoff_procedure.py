@@ -1,6 +1,6 @@
 """The take-off as a table of phases: the landing backwards; the names of thresholds are those of `bounds.thresholds`."""
 
-from armland.mission.finals import FINALS
+from armland.mission.finals import TAKEOFF_FINALS
 from armland.mission.phases import CARRIED_N, IMPACT_N, Condition, Guard, Phase
 
 C, G = Condition, Guard
@@ -15,8 +15,7 @@ TAKEOFF = (
         free=True,
         on_timeout="refused",
         guards=(
-            G("refused", (C("magnet_fault", ">", "half"),)),
-            G("reach", (C("magnet_ready", ">", "half"), C("bias_known", ">", "half")), 0.2),
+            G("reach", (C("magnet_ready", ">", "half"), C("bias_known", ">", "half"), C("uav_seen", ">", "half")), 0.2),
         ),
     ),
     Phase(
@@ -33,19 +32,19 @@ TAKEOFF = (
     Phase(
         "touch",
         force_n=IMPACT_N,
-        kind="cradle",
+        kind="ground",
         arm="move",
         uav="off",
         magnet="on",
         duration_s=1.5,
         timeout_s=3.0,
-        on_timeout="secured",
+        on_timeout="refused",
         guards=(G("grip", (C("contact", ">", "half"), C("progress", ">", "almost_one")), 0.05),),
     ),
     Phase(
         "grip",
         force_n=IMPACT_N,
-        kind="cradle",
+        kind="grip",
         arm="yield",
         uav="off",
         magnet="on",
@@ -56,7 +55,7 @@ TAKEOFF = (
     Phase(
         "spin_up",
         force_n=CARRIED_N,
-        kind="cradle",
+        kind="grip",
         link="landed",
         arm="yield",
         uav="ramp",
@@ -64,7 +63,7 @@ TAKEOFF = (
         magnet="on",
         timeout_s=5.0,
         on_timeout="secured",
-        guards=(G("lift", (C("thrust_left", "<", "thrust_left_n"),), 0.2),),
+        guards=(G("lift", (C("thrust_left", "<", "thrust_left_n"), C("uav_seen", ">", "half")), 0.2),),
     ),
     Phase(
         "lift",
@@ -78,7 +77,7 @@ TAKEOFF = (
         link="held",
         duration_s=1.5,
         timeout_s=4.0,
-        on_timeout="secured",
+        on_timeout="holding",
         guards=(G("carry_up", (C("progress", ">", "almost_one"), C("arm_share", ">", "share_carried")), 0.1),),
     ),
     Phase(
@@ -105,7 +104,8 @@ TAKEOFF = (
         uav="balance",
         magnet="on",
         held=True,
-        link="held",
+        # It flies by itself should the link be lost: it must know so before the magnet opens.
+        link="guided",
         observe=True,
         timeout_s=8.0,
         on_timeout="holding",
@@ -150,5 +150,5 @@ TAKEOFF = (
             ),
         ),
     ),
-    *(p if p.name != "done" else Phase("done", arm="hold", uav="station", final=True) for p in FINALS),
+    *TAKEOFF_FINALS,
 )

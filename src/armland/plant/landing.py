@@ -113,8 +113,12 @@ class LandingPlant:
         self._tau_max = np.abs(limits).min(axis=1)
         self._friction = self.scene.model.dof_frictionloss[self.scene.joint_dof].copy()
         self._solimp, self._braked = self.scene.model.dof_solimp[self.scene.joint_dof].copy(), 0
+        elbow = int(self.scene.model.dof_bodyid[self.scene.joint_dof[self.scene.joints // 2]])
+        self._bodies = {"uav": self.scene.uav_body, "tool": int(self._magnet_p["tool"][0]), "elbow": elbow}
         phases = tuple(p.name for p in (LANDING if start == "air" else takeoff_phases(scenario.landing)))
-        self.faults = FaultSchedule(scenario.landing.faults, phases, scenario.demonstrator.run.rate_hz)
+        self.faults = FaultSchedule(
+            scenario.landing.faults, phases, scenario.demonstrator.run.rate_hz, self.scene.joints
+        )
         self._tick = 0
 
     def connect(self) -> None:
@@ -172,6 +176,8 @@ class LandingPlant:
         )
         if self._pictures is not None:
             self._show(self._pictures, tick.measurement)
+        if self.faults:
+            self.faults.corrupt(tick.measurement)
 
     def _show(self, pictures: Pictures, m: np.ndarray) -> None:
         rate = self.scenario.landing.eye.rate_hz
@@ -209,6 +215,8 @@ class LandingPlant:
         if what == BRAKE:
             self._braked = int(tick.command["brake"][0])
             self._brake(self._braked == 1)
+        if self.faults:
+            self.faults.push(d.xfrc_applied, self._bodies)
         mujoco.mj_step(self.scene.model, d)
         self._tick += 1
 

@@ -58,6 +58,7 @@ STATE = np.dtype(
         ("up", "f8", (RING, 6)),  # q_d, thrust, mode as sent
         ("sent", "i8", (RING,)),  # tick of the message in that row; -1: none
         ("down", "f8", (RING, 7)),  # attitude and rates as sampled
+        ("echo", "i8", (RING,)),  # `heard` as sampled
         ("imu", "f8", (7,)),
         ("wrench", "f8", (6,)),  # force-torque sensor's filter
         ("filtering", "i8"),
@@ -81,6 +82,7 @@ STATE = np.dtype(
         ("drift", "f8"),  # N on the force sensor's z
         ("health", "f8", (4,)),  # share of its thrust that each rotor gives
         ("force", "f8", (3,)),  # N, world, on the UAV
+        ("torque", "f8", (3,)),  # N·m, world, on the UAV
         ("away", "f8", (3,)),  # m, by which a UAV that does not obey hovers elsewhere
         ("deaf", "i8"),
         ("camera_frozen", "i8"),
@@ -199,6 +201,7 @@ def _uav_sample(tick: int, p: Record, s: Record, noise: Array, m: Record, t: Rec
         row = s.down[tick % RING]
         for i in range(7):
             row[i] = s.imu[i]
+        s.echo[tick % RING] = s.heard
     taken = tick - p.downlink
     if taken < 0:
         # Before the first sample has arrived the ground knows the attitude from before the run.
@@ -206,7 +209,7 @@ def _uav_sample(tick: int, p: Record, s: Record, noise: Array, m: Record, t: Rec
             m.uav_quat[i] = s.down[0, i]
     elif taken % p.link_period == 0 and not s.downlink_lost:
         row = s.down[taken % RING]
-        m.uav_tick = taken
+        m.uav_tick, m.uav_heard = taken, s.echo[taken % RING]
         for i in range(4):
             m.uav_quat[i] = row[i]
         for i in range(3):
@@ -261,7 +264,7 @@ def actuate(
         applied[i] = R[i, 2] * wrench[0] + s.force[i]
         if i < 2:
             applied[i] -= p.drag * (t.v_cm[i] - s.air[i])
-        applied[3 + i] = 0.0
+        applied[3 + i] = s.torque[i]
         for k in range(3):
             applied[3 + i] += R[i, k] * wrench[1 + k]
     return True

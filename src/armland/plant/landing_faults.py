@@ -3,7 +3,8 @@
 import numpy as np
 
 from armland.errors import ConfigurationError
-from armland.mission.landing_scenario import Fault
+from armland.mission.failures import Fault
+from armland.rotations import from_rotation_vector, multiply
 
 WRITTEN = (
     "uplink_lost",
@@ -13,11 +14,20 @@ WRITTEN = (
     "deaf",
     "drift",
     "force",
+    "torque",
     "away",
     "camera_frozen",
     "camera_lost",
 )
 """What of the devices' state belongs to the faults, besides the rotors' health."""
+
+DEVICES = {
+    "encoders": ("q", "qd"),
+    "wrench": ("wrench",),
+    "attitude": ("uav_quat", "uav_rate"),
+    "camera": ("camera_position",),
+}
+"""Fields of the measurement that a device fills."""
 
 
 class FaultSchedule:
@@ -27,23 +37,29 @@ class FaultSchedule:
         faults: what fails.
         phases: names of the mission's phases, in the order of the numbers that `apply` gets.
         rate_hz: base rate.
+        joints: of the arm.
 
     Raises:
-        ConfigurationError: a fault in a phase that the mission does not have.
+        ConfigurationError: a fault in a phase that the mission does not have, or of a joint that the arm does not have.
 
     A fault is armed when its phase first begins (or the run does) and acts from `after_s` on for `lasts_s`.
     """
 
-    def __init__(self, faults: tuple[Fault, ...], phases: tuple[str, ...], rate_hz: int) -> None:
+    def __init__(self, faults: tuple[Fault, ...], phases: tuple[str, ...], rate_hz: int, joints: int) -> None:
         unknown = sorted({f.phase for f in faults if f.phase is not None} - set(phases))
         if unknown:
             raise ConfigurationError(f"faults: no phase {unknown}; the mission's phases are {', '.join(phases)}")
+        beyond = [f.joint for f in faults if f.joint > joints]
+        if beyond:
+            raise ConfigurationError(f"faults: joint {beyond[0]} does not exist; the arm has joints 1 to {joints}")
         self._faults, self._phases, self._rate = faults, phases, rate_hz
         self.reset()
 
     def reset(self) -> None:
         """Back to the run's begin."""
         self._armed: list[int | None] = [0 if f.phase is None else None for f in self._faults]
+        self._acting: list[Fault] = []
+        self._turned = -1
 
     def __bool__(self) -> bool:
         return bool(self._faults)
@@ -53,6 +69,7 @@ class FaultSchedule:
         for name in WRITTEN:
             state[name] = 0
         state["health"], magnet["health"], magnet["rated"] = 1.0, 1.0, rated
+        self._acting = []
         for i, fault in enumerate(self._faults):
             if self._armed[i] is None and fault.phase is not None and self._phases[phase] == fault.phase:
                 self._armed[i] = tick
@@ -61,7 +78,31 @@ class FaultSchedule:
                 continue
             since = (tick - armed) / self._rate - fault.after_s
             if 0.0 <= since < fault.lasts_s:
+                self._acting.append(fault)
                 self._act(fault, since, state, magnet)
+
+    def corrupt(self, measurement: np.ndarray) -> None:
+        """Put into `measurement` (1,) what the devices that fail would write; from the tick after `apply` on."""
+        for fault in self._acting:
+            if fault.kind == "non_finite":
+                for name in DEVICES[fault.device]:
+                    measurement[name] = np.nan
+            elif fault.kind == "encoder_offset":
+                measurement["q"][0, fault.joint - 1] += fault.size
+            elif fault.kind == "attitude_offset" and measurement["uav_tick"][0] != self._turned:
+                # The sample stays in the measurement until the next one arrives.
+                self._turned = int(measurement["uav_tick"][0])
+                turn = from_rotation_vector(fault.size * np.array(fault.direction))
+                measurement["uav_quat"][0] = multiply(turn, measurement["uav_quat"][0])
+
+    def push(self, xfrc_applied: np.ndarray, bodies: dict[str, int]) -> None:
+        """Add the pushes of this tick to MuJoCo's `xfrc_applied` (bodies, 6) in the rows that `bodies` names."""
+        if any(f.kind == "push" for f in self._faults):
+            # The rows of tool and UAV are written by others at every tick.
+            xfrc_applied[bodies["elbow"]] = 0.0
+        for fault in self._acting:
+            if fault.kind == "push":
+                xfrc_applied[bodies[fault.body], :3] += fault.size * np.array(fault.direction)
 
     def _act(self, fault: Fault, since: float, state: np.ndarray, magnet: np.ndarray) -> None:
         match fault.kind:
@@ -90,4 +131,6 @@ class FaultSchedule:
             case "overload":
                 state["force"][0, 2] = -fault.size
             case "unreachable":
-                state["deaf"], state["away"][0, 2] = 1, fault.size
+                state["deaf"], state["away"] = 1, fault.size * np.array(fault.direction)
+            case "twist":
+                state["torque"] = fault.size * np.array(fault.direction)
