@@ -71,6 +71,7 @@ def test_offset_on_the_magnet_depends_on_nothing_but_the_plates_place(offset):
         look_at_grip(image(np.array(offset), arm, uav)[0], SETUP.parameters[0], MARKER, DOWN, s[0])
         assert s["grip_offset"][0] == pytest.approx(np.linalg.norm(offset), abs=1e-12)
         assert s["grip_tick"][0] == 77
+    assert s["grip_far"][0] == (5 if np.linalg.norm(offset) > 0.010 else 0)
 
 
 def test_tick_without_an_image_says_nothing_of_the_grip():

@@ -43,7 +43,7 @@ class Bench:
             self.m[name] = 1000
         self.e["quat"][0, 0], self.e["plate_valid"], self.h["joint_margin"] = 1.0, 1, 1.0
         self.s["sigma"], self.s["seen"], self.s["started"] = 0.2, 1, 1
-        self.s["grip_tick"], self.s["grip_offset"] = 950, 0.003
+        self.s["grip_tick"] = 950
 
     def find(self, ticks=1, matters=ALL, bad=0, expected=np.nan, magnet_on=False, force_max=1e9):
         for _ in range(ticks):
@@ -97,7 +97,7 @@ def provoke(bench, fault):
         case "uav_tilt":
             bench.e["quat"][0] = [np.cos(0.3), np.sin(0.3), 0.0, 0.0]
         case "slip":
-            bench.s["grip_offset"] = 0.012
+            bench.s["grip_far"] = 2
         case "near_limit":
             bench.s["sigma"] = 0.02
     return {}
@@ -254,7 +254,7 @@ def test_link_that_is_silent_on_the_way_up_is_found_as_well(bench):
 
 
 def test_plate_of_a_silent_uav_is_left_where_it_is(bench):
-    bench.s["grip_offset"], bench.m["uav_heard"] = 0.012, 700
+    bench.s["grip_far"], bench.m["uav_heard"] = 2, 700
     only = np.full(len(FAULTS), -1, np.int64)
     only[FAULTS.index("slip")] = 0
     assert bench.find(1000, only) == "none"
@@ -265,11 +265,11 @@ def test_plate_of_a_silent_uav_is_left_where_it_is(bench):
 @pytest.mark.parametrize(
     ("age", "force", "expected", "found"),
     [
-        (500, 0.2, 2.0, "slip"),
-        (500, 1.9, 2.0, "none"),
+        (500, 0.2, 2.5, "slip"),
+        (500, 1.9, 2.5, "none"),
         (500, 0.2, 0.5, "none"),
         (500, 0.2, np.nan, "none"),
-        (50, 0.2, 2.0, "none"),
+        (50, 0.2, 2.5, "none"),
     ],
 )
 def test_load_that_is_gone_is_a_slip_only_where_no_image_says_otherwise(bench, age, force, expected, found):
@@ -280,3 +280,8 @@ def test_load_that_is_gone_is_a_slip_only_where_no_image_says_otherwise(bench, a
 def test_joint_beyond_its_speed_is_near_its_limit(bench):
     bench.h["speed_ratio"] = 0.95
     assert bench.find(100) == "near_limit"
+
+
+def test_one_image_that_is_far_off_is_no_slip(bench):
+    bench.s["grip_far"] = 1
+    assert bench.find(1000) == "none"

@@ -190,7 +190,7 @@ def extras() -> list[Trial]:
         _extra("deaf UAV", "landing", "holding", "wrench_drift", f("set_down", kind="unreachable", size=0.0)),
         _extra("deaf UAV that climbs", "landing", "holding", "wrench_drift", f("carry", kind="unreachable", size=0.5)),
         _extra("rotor at 70 %", "landing", "done", "none", f("carry", **lame)),
-        _extra("rotor at 70 %", "takeoff", "done", "none", f("carry_up", **lame)),
+        _extra("rotor at 70 %", "takeoff", "holding", "none", f("carry_up", **lame)),
         _extra("dead magnet at the hand-over", "landing", "let_fly", "slip", f("hand_over", **WAYS["slip"])),
         # Several at once.
         _extra(

@@ -16,6 +16,8 @@ def thresholds(landing: Landing) -> dict[str, float]:
         "align_offset_m": b.align_offset_m,
         "align_speed_mps": b.align_speed_mps,
         "align_tilt_deg": b.align_tilt_deg,
+        # A UAV that the onboard loop cannot hold level, a weak rotor for one, is not let go.
+        "level_tilt_deg": 2.0,
         "lost_offset_m": b.lost_offset_m,
         "pull_seen_n": b.pull_seen_n,
         "let_go_m": 0.01,

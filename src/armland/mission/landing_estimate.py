@@ -127,6 +127,7 @@ def look_at_grip(m: Record, p: Record, marker: Array, marker_quat: Array, s: Rec
     for i in range(3):
         apart += (p.camera[i] + m.camera_position[i] + way[i]) ** 2
     s.grip_offset, s.grip_tick = np.sqrt(apart), m.camera_capture
+    s.grip_far = s.grip_far + 1 if s.grip_offset > p.slip else 0
 
 
 @njit(cache=True)

@@ -128,5 +128,6 @@ def memory_layout(joints: int) -> np.dtype:
             ("seen", "i8"),  # 1 once the plate has been seen
             ("grip_offset", "f8"),  # m, of the plate's pivot from the end effector, in the newest image
             ("grip_tick", "i8"),  # that image's exposure
+            ("grip_far", "i8"),  # images in a row in which it was too far off
         ]
     )

@@ -32,13 +32,13 @@ TAKEOFF = (
     Phase(
         "touch",
         force_n=IMPACT_N,
-        kind="ground",
+        kind="grip",
         arm="move",
         uav="off",
         magnet="on",
         duration_s=1.5,
         timeout_s=3.0,
-        on_timeout="refused",
+        on_timeout="secured",
         guards=(G("grip", (C("contact", ">", "half"), C("progress", ">", "almost_one")), 0.05),),
     ),
     Phase(
@@ -115,7 +115,7 @@ TAKEOFF = (
                 (
                     C("hinge_force", "<", "force_balanced_n"),
                     C("uav_seen", ">", "half"),
-                    C("tilt", "<", "align_tilt_deg"),
+                    C("tilt", "<", "level_tilt_deg"),
                 ),
                 0.3,
             ),
