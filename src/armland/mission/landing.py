@@ -4,7 +4,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from armland.mission.landing_arm import BRAKE, JOIN, arm_torque, begin_reference, held_force, refer, track
+from armland.mission.landing_arm import BALANCE, BRAKE, JOIN, arm_torque, begin_reference, held_force, refer, track
+from armland.mission.landing_balance import begin_balance, refer_balance
 from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, screened, tilt_of
 from armland.mission.landing_uav import AUTONOMOUS, LEVEL, STATION, command_uav, thrust_in_force
 from armland.mission.phases import MAGNET, SIGNAL, SIGNALS, next_phase
@@ -171,6 +172,7 @@ def landing_tick(
     bad = screened(m, good[0])
     row = phases[s.phase]
     held = row.held == 1
+    s.held = row.held
     # Estimate.
     e.thrust = thrust_in_force(now, p, s)
     estimate_arm(m, arm, e)
@@ -212,18 +214,22 @@ def landing_tick(
         elapsed, row, held = 0.0, phases[new], phases[new].held == 1
         if row.arm == JOIN:
             track(e, p, s, True)
+        elif row.arm == BALANCE:
+            begin_balance(e, p, s)
     t.mission.tick, t.mission.phase, t.mission.retries, t.mission.fault = now, s.phase, s.retries, s.fault
     t.mission.elapsed = elapsed
     # Reference and laws.
     track(e, p, s, False)
     t.reference.tick = now
     t.mission.progress = refer(row.arm, elapsed, row.duration, s.phase, e, p, s, t.reference)
+    if row.arm == BALANCE:
+        refer_balance(elapsed, now - m.uav_tick <= p.attitude_age, e, p, s, t.reference)
     for i in range(4):
         t.reference.quat[i] = s.q_d[i]
     c.magnet = row.magnet
     c.brake = 1 if row.arm == BRAKE else 0
     if held:
         held_force(e, t.reference, p, s, row.observe == 1)
-    arm_torque(held, m, e, t.reference, p, arm, s, c)
+    arm_torque(held, row.arm == BALANCE, m, e, t.reference, p, arm, s, c)
     command_uav(now, row.uav, row.share, row.link, filter_s[0].align.quat.copy(), e, p, s, c)
     limit(bad, arm.gravity, m, e, p, s, c, t.health)

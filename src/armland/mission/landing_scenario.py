@@ -50,6 +50,7 @@ class Fault(Section):
     phase: str | None = Field(None, description="phase at whose begin it is armed; the run's begin if absent")
     after_s: NonNegative = Field(0.0, description="time from there")
     lasts_s: Positive = Field(1e6, description="how long it lasts")
+    rotor: int = Field(1, ge=1, le=4, description="which rotor; only for `rotor_loss`")
     size: Finite = Field(
         1.0,
         description="drift in N/s, coil or magnet or rotor's share that is lost, load in N, distance in m; not used by the others",
@@ -137,6 +138,11 @@ class Envelope(Section):
     arm_age_ms: Positive = 5.0
     wrench_age_ms: Positive = 20.0
     tilt_deg: Positive = Field(30.0, description="tilt of the UAV at which it counts as out of control")
+    capture_deg: Positive = Field(
+        3.0, description="tilt plus tilt rate over the rate of fall at which a UAV on the hinge counts as falling"
+    )
+    balance_push_mps2: Positive = Field(15.0, description="largest acceleration with which the arm balances a UAV")
+    balance_reach_m: Positive = Field(0.13, description="how far the arm may move a UAV that it balances, each axis")
 
 
 class Landing(Section):

@@ -6,6 +6,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from armland.control.balance import balance_gains, fall_rate
 from armland.control.exact import UavParameters
 from armland.control.gains import Wanted, exact_gains
 from armland.errors import ConfigurationError, WorkspaceError
@@ -225,8 +226,20 @@ def _parameters(
     p["track"], p["track_a"], p["coast"] = 12.0, 3.0, 0.06
     p["admittance"], p["admittance_max"] = 3e-3, 4e-3
     p["camera"] = landing.eye.camera_m
+    _balance(p, scenario, arm, uav, rate)
     _supervisor(p, landing, rate)
     return p
+
+
+def _balance(p: NDArray[np.void], scenario: LandingScenario, arm: ArmModel, uav: UavParameters, rate: int) -> None:
+    rate_of_fall, place = fall_rate(uav), scenario.landing.place
+    p["fall_rate"], p["balance"] = rate_of_fall, balance_gains(rate_of_fall)
+    v = scenario.landing.envelope
+    p["push_max"], p["sway_max"], p["capture_max"] = v.balance_push_mps2, v.balance_reach_m, np.deg2rad(v.capture_deg)
+    # The last joint but one tilts the tool: where it sits is the wrist.
+    p["swing"], p["wrist"] = 0.11, np.linalg.norm(arm.position - arm.anchor[-2])
+    p["attitude_age"] = round(0.05 * rate)
+    p["down"], p["settle"], p["near"] = place.put_down_m[2], 0.025, 0.010
 
 
 def _supervisor(p: NDArray[np.void], landing: Landing, rate: int) -> None:

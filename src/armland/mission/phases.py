@@ -96,9 +96,9 @@ class Phase(NamedTuple):
     """Whether the mission ends here."""
 
 
-ARM = ("hold", "join", "track", "close", "move", "back_off", "yield", "brake")
+ARM = ("hold", "join", "track", "close", "move", "back_off", "yield", "brake", "balance")
 """Reference of the arm: rest where it is; septic blend from rest to below the plate; below the plate; the gap to the plate closes;
-septic move to the phase's target; septic move away downwards from where it is; give way to the hinge force; brakes on."""
+septic move to the phase's target; septic move away downwards from where it is; yield to the hinge force; brakes; balance the UAV."""
 
 UAV = ("autonomous", "station", "level", "ramp", "balance", "off")
 """The UAV hovers by itself; keeps its station by the ground's estimate; level with the thrust it has; level with a

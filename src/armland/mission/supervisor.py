@@ -16,6 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from armland.control.balance import capture_angle
 from armland.mission.records import Limit
 from armland.records import Record
 from armland.rotations import Array
@@ -30,6 +31,7 @@ FAULTS = (
     "wrench_drift",
     "magnet_coil",
     "overload",
+    "rotor_lost",
     "uav_tilt",
     "slip",
     "near_limit",
@@ -54,6 +56,7 @@ FAULT_TABLE: dict[str, dict[str, str]] = {
     "magnet_coil": {"ground": "refused", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "-"},
     "slip": {"ground": "-", "flight": "-", "touch": "-", "held": "let_fly", "cradle": "-"},
     "overload": {"ground": "-", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "secured"},
+    "rotor_lost": {"ground": "-", "flight": "-", "touch": "balancing", "held": "balancing", "cradle": "-"},
     "uav_tilt": {"ground": "-", "flight": "abort", "touch": "abort", "held": "hanging", "cradle": "secured"},
     "near_limit": {"ground": "refused", "flight": "abort", "touch": "abort", "held": "holding", "cradle": "secured"},
 }
@@ -69,12 +72,13 @@ FAULT_TABLE: dict[str, dict[str, str]] = {
     WRENCH_DRIFT,
     MAGNET_COIL,
     OVERLOAD,
+    ROTOR_LOST,
     UAV_TILT,
     SLIP,
     NEAR_LIMIT,
 ) = range(len(FAULTS))
 
-DEBOUNCE_TICKS = (0, 20, 1, 1, 1, 1, 300, 20, 3, 40, 100, 20)
+DEBOUNCE_TICKS = (0, 20, 1, 1, 1, 1, 300, 20, 3, 5, 40, 100, 20)
 """Ticks for which each fault's sign must be seen. Ages are debounced by themselves."""
 
 L_POSITION, L_SPEED, L_TORQUE, L_RATE, L_SINGULAR, L_FORCE, L_FINITE = (
@@ -149,6 +153,9 @@ def find_fault(
     signs[MAGNET_COIL] = magnet_on and m.magnet_fault == 1
     signs[SLIP] = e.plate_valid == 1 and apart > p.slip**2
     signs[OVERLOAD] = force > p.hinge_max
+    # Next to the rails touching them tilts it too.
+    most = p.capture_max * (2.0 if e.r[2] < p.down + p.near else 1.0)
+    signs[ROTOR_LOST] = s.held == 1 and capture_angle(e.quat, e.omega, p.fall_rate) > most
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
     signs[NEAR_LIMIT] = h.joint_margin < p.joint_margin or s.sigma < p.sigma_min
     for f in range(1, len(FAULTS)):
