@@ -23,7 +23,11 @@ s⁴ + a₃s³ + a₂s² + a₁s + a₀ take
 
     k_x = a₀/ω₀²,  k_v = a₁/ω₀²,  k_ω = (a₃ + k_v) g/ω₀²,  k_θ = (a₂ + k_x + ω₀²) g/ω₀²      (B.4)
 
-All four are positive: a pivot that stands too far to one side first moves further out, and the body leans back.
+The attitude arrives T late, carried on to the present with its rates: θ_c. What the pivot did since is known, and so, by (B.1),
+
+    Δ = ω₀² (T θ_c − (ẋ(t) − ẋ(t − T))/g),  θ̇ ≈ θ̇(t − T) + Δ,  θ ≈ θ_c + ½ T Δ        (B.5)
+
+All four gains are positive: a pivot that stands too far to one side first moves further out, and the body leans back.
 
 Assumptions: small angles, the same inertia about both axes, the body's spin about its z axis of no consequence.
 """
@@ -72,12 +76,27 @@ def balance_gains(rate: float, poles: tuple[float, ...] = POLES) -> BalanceGains
     return BalanceGains(float(position), float(speed), float(tilt), float(tilt_rate))  # (B.4)
 
 
-def balance_loop(gains: BalanceGains, rate: float, attitude: float, arm: float = 0.0) -> Loop:
-    """Loop of (B.1) under (B.3), broken at u: attitude `attitude` s old, the arm's push `arm` s late."""
+def balance_loop(gains: BalanceGains, rate: float, delay: float, arm: float = 0.0, predicts: bool = True) -> Loop:
+    """Loop of (B.1) under (B.3), broken at u.
+
+    Args:
+        gains: of `balance_gains`.
+        rate: ω₀, rad/s.
+        delay: T of (B.5), s.
+        arm: by which the arm's push is later than (B.5) takes it to be, s.
+        predicts: with (B.5), or with attitude and rates as they arrive.
+    """
     k, w2 = gains, rate**2
     pivot: Array = -np.polymul([k.speed, k.position], [1.0, 0.0, -w2]).astype(np.float64)
-    body: Array = np.array([k.tilt_rate, k.tilt, 0.0, 0.0]) * w2 / GRAVITY
-    return Loop((pivot, body), (arm, arm + attitude), np.array([1.0, 0.0, -w2, 0.0, 0.0]))
+    denominator = np.array([1.0, 0.0, -w2, 0.0, 0.0])
+    if not predicts:
+        plain = np.array([k.tilt_rate, k.tilt, 0.0, 0.0]) * w2 / GRAVITY
+        return Loop((pivot, plain), (0.0, arm + delay), denominator)
+    carried, step = np.array([delay, 1.0]), k.tilt_rate + 0.5 * delay * k.tilt
+    late = np.polyadd(np.array([k.tilt_rate, 0.0]), (k.tilt + step * w2 * delay) * carried)
+    body: Array = np.polymul(late, [1.0, 0.0, 0.0]).astype(np.float64) * w2 / GRAVITY
+    known: Array = step * w2 / GRAVITY * np.array([1.0, 0.0, -w2, 0.0])
+    return Loop((pivot, body, known, -known), (0.0, arm + delay, 0.0, delay), denominator)  # (B.5)
 
 
 @njit(cache=True)
@@ -95,6 +114,13 @@ def capture_angle(quat: Array, omega: Array, rate: float) -> float:
     """|ξ| of both axes together. Source: (B.2)."""
     x, y, x_rate, y_rate = lean_of(quat, omega)
     return float(np.hypot(x + x_rate / rate, y + y_rate / rate))  # (B.2)
+
+
+@njit(cache=True)
+def predicted(tilt: float, tilt_rate: float, gained: float, delay: float, rate: float) -> tuple[float, float]:
+    """θ and θ̇ now of θ_c and a rate `delay` s old, the pivot having `gained` m/s since. Source: (B.5)."""
+    change = rate * rate * (delay * tilt - gained / GRAVITY)
+    return tilt + 0.5 * delay * change, tilt_rate + change  # (B.5)
 
 
 @njit(cache=True)

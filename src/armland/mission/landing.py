@@ -223,7 +223,7 @@ def landing_tick(
     t.reference.tick = now
     t.mission.progress = refer(row.arm, elapsed, row.duration, s.phase, e, p, s, t.reference)
     if row.arm == BALANCE:
-        refer_balance(elapsed, now - m.uav_tick <= p.attitude_age, e, p, s, t.reference)
+        refer_balance(elapsed, now - m.uav_tick, e, p, s, t.reference)
     for i in range(4):
         t.reference.quat[i] = s.q_d[i]
     c.magnet = row.magnet

@@ -7,14 +7,15 @@
 
 The pivot moves by (B.3) of `control.balance`, and the arm follows the way that this makes as it follows any other reference,
 with acceleration and load fed forward: friction in its joints then does not come into the balance. The tool leans towards
-where the pivot goes, φ = s tanh(x/s)/L across x, L from the wrist to the pivot: the wrist and all behind it, which may stand
-between the cradle's rails, hardly move.
+where the pivot goes, φ = c x/L across x, L from the wrist to the pivot, c = `swing` the wrist's share of the way: the arm
+behind the wrist, which may stand between the cradle's rails, moves by little, and no joint has to be fast for all.
 """
 
 import numpy as np
 from numba import njit
 
-from armland.control.balance import BalanceGains, lean_of, push
+from armland.control.balance import BalanceGains, lean_of, predicted, push
+from armland.mission.landing_state import RING
 from armland.records import Record
 from armland.rotations import Array, from_rotation_vector, matrix, rotation_error
 
@@ -28,17 +29,18 @@ def begin_balance(e: Record, p: Record, s: Record) -> None:
     s.settling = 1 if e.r[2] - p.down < p.settle else 0
     for i in range(2):
         s.sway[i], s.sway_v[i], s.sway_a[i] = 0.0, e.v[i], 0.0
+        s.sway_log[:, i] = e.v[i]
     for i in range(3):
         s.lean[i] = s.lean_v[i] = s.lean_a[i] = 0.0
 
 
 @njit(cache=True)
-def refer_balance(elapsed: float, seen: bool, e: Record, p: Record, s: Record, r: Record) -> None:
+def refer_balance(elapsed: float, age: int, e: Record, p: Record, s: Record, r: Record) -> None:
     """Fill the reference of one tick of balancing.
 
     Args:
         elapsed: time since it began, s.
-        seen: whether the attitude is young enough; without it the pivot is brought to rest.
+        age: of the attitude, ticks; beyond `attitude_age` the pivot is brought to rest.
         e: estimate.
         p: parameters.
         s: memory.
@@ -50,12 +52,16 @@ def refer_balance(elapsed: float, seen: bool, e: Record, p: Record, s: Record, r
     if s.settling:
         _settle(elapsed, p, s, r)
     x, y, x_rate, y_rate = lean_of(e.quat, e.omega)
+    now = e.tick % RING
     gains = BalanceGains(p.balance[0], p.balance[1], p.balance[2], p.balance[3])
     for i in range(2):
         tilt, tilt_rate = (x, x_rate) if i == 0 else (y, y_rate)
-        if s.settling or not seen:
+        s.sway_log[now, i] = s.sway_v[i]
+        if s.settling or age > p.attitude_age:
             s.sway_a[i] = min(max(-s.sway_v[i] / p.coast, -p.push_max), p.push_max)
         else:
+            gained = s.sway_v[i] - s.sway_log[(now - age) % RING, i]
+            tilt, tilt_rate = predicted(tilt, tilt_rate, gained, age * p.tick_s, p.fall_rate)
             s.sway_a[i] = push(tilt, tilt_rate, s.sway[i], s.sway_v[i], gains, p.push_max, p.sway_max)
         s.sway[i] += (s.sway_v[i] + 0.5 * s.sway_a[i] * p.tick_s) * p.tick_s
         s.sway_v[i] += s.sway_a[i] * p.tick_s
@@ -80,12 +86,8 @@ def _settle(elapsed: float, p: Record, s: Record, r: Record) -> None:
 @njit(cache=True)
 def _lean(i: int, p: Record, s: Record) -> None:
     # Towards x the tool turns about +y, towards y about −x.
-    h = np.tanh(s.sway[i] / p.swing)
-    slope = 1.0 - h * h
-    axis, sign = (1, 1.0) if i == 0 else (0, -1.0)
-    s.lean[axis] = sign * p.swing * h / p.wrist
-    s.lean_v[axis] = sign * slope * s.sway_v[i] / p.wrist
-    s.lean_a[axis] = sign * (slope * s.sway_a[i] - 2.0 * h * slope * s.sway_v[i] ** 2 / p.swing) / p.wrist
+    axis, slope = (1, p.swing / p.wrist) if i == 0 else (0, -p.swing / p.wrist)
+    s.lean[axis], s.lean_v[axis], s.lean_a[axis] = slope * s.sway[i], slope * s.sway_v[i], slope * s.sway_a[i]
 
 
 @njit(cache=True)

@@ -65,7 +65,7 @@ def parameters_layout(joints: int, phases: int) -> np.dtype:
             ("fall_rate", "f8"),  # rad/s
             ("push_max", "f8"),  # m/s²
             ("sway_max", "f8"),  # m
-            ("swing", "f8"),  # m, of the pivot about the wrist
+            ("swing", "f8"),  # share of the pivot's way that the wrist makes
             ("wrist", "f8"),  # m, from the wrist to the pivot
             ("attitude_age", "i8"),  # ticks, of an attitude that can be balanced by
             ("down", "f8"),  # m, height of the pivot when the UAV stands on the cradle
@@ -117,6 +117,7 @@ def memory_layout(joints: int) -> np.dtype:
             ("sway", "f8", (2,)),  # m [w]
             ("sway_v", "f8", (2,)),  # m/s
             ("sway_a", "f8", (2,)),  # m/s²
+            ("sway_log", "f8", (RING, 2)),  # m/s, the pivot's velocity
             ("lean", "f8", (3,)),  # rad [w]
             ("lean_v", "f8", (3,)),  # rad/s
             ("lean_a", "f8", (3,)),  # rad/s²

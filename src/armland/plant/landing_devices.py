@@ -24,6 +24,7 @@ PARAMETERS = np.dtype(
         ("kp", "f8", (3,)),
         ("kd", "f8", (3,)),
         ("lead", "f8"),  # s
+        ("watch", "f8"),  # share of its due thrust below which a rotor counts as lost
         ("onboard_s", "f8"),
         ("mass", "f8"),
         ("mixer", "f8", (4, 4)),
@@ -65,6 +66,9 @@ STATE = np.dtype(
         ("rate", "f8", (3,)),
         ("rotor_asked", "f8", (4,)),
         ("rotor", "f8", (4,)),
+        ("rotor_due", "f8", (4,)),  # N, what the rotors would give if all were well
+        ("weak", "i8"),  # samples for which a rotor has given too little
+        ("cut", "i8"),  # 1: stopped its rotors itself
         # Faults, written by the plant.
         ("uplink_lost", "i8"),
         ("downlink_lost", "i8"),
@@ -242,6 +246,7 @@ def actuate(
     R = matrix(multiply(t.quat, from_rotation_vector(t.omega * p.tick_s)))
     wrench = np.zeros(4)
     for k in range(4):
+        s.rotor_due[k] += p.rotor_gain * (s.rotor_asked[k] - s.rotor_due[k])
         s.rotor[k] += p.rotor_gain * (s.rotor_asked[k] * p.thrust_factor * s.health[k] - s.rotor[k])
         for i in range(4):
             wrench[i] += p.mixer[i, k] * s.rotor[k]
