@@ -7,6 +7,7 @@ import pytest
 from armland.plant.magnet import (
     OFF,
     ON,
+    RECESS_M,
     TEST,
     Magnet,
     breakaway_force,
@@ -157,7 +158,8 @@ def test_a_light_plate_lands_softly_only_because_of_the_cushion():
         if not cushion:
             bench.model.pair_adhesion[:] = 0.0
         deepest[cushion] = -min(bench.step(1, WEIGHT * UP).height for _ in range(60))
-    assert deepest[True] < 1e-6
+    # The last RECESS_M are not cushioned: it arrives with RECESS_M over the contact's 4 ms, and goes a step further.
+    assert deepest[True] < RECESS_M / 4.0
     assert deepest[False] > 5e-5
 
 

@@ -19,7 +19,7 @@ from armland.mission.landing_state import RING
 from armland.records import Record
 from armland.rotations import Array, from_rotation_vector, matrix, rotation_error
 
-SETTLE_MPS = 0.15
+SETTLE_MPS = 0.04
 """Mean speed at which a UAV near the rails is set down."""
 
 
@@ -76,7 +76,7 @@ def refer_balance(elapsed: float, age: int, e: Record, p: Record, s: Record, r: 
 
 @njit(cache=True)
 def _settle(elapsed: float, p: Record, s: Record, r: Record) -> None:
-    way = p.down - s.r0[2]
+    way = p.down - s.r0[2] - s.v0[2] * p.coast
     u = min(elapsed * SETTLE_MPS / max(abs(way), 1e-4), 1.0)
     # A smooth step: at rest at both ends.
     r.r[2] += u * u * (3.0 - 2.0 * u) * way
