@@ -23,26 +23,27 @@ def since(outcome):
     return outcome.records["truth"][round(1000 * outcome.phases[-1].start_s) :]
 
 
-def check_held(outcome, tilt=8.0):
+def check_held(outcome, tilt=8.0, state="held"):
     truth = since(outcome)
-    assert (outcome.fault, outcome.end, outcome.state) == ("rotor_lost", "balancing", "held")
+    assert (outcome.fault, outcome.end, outcome.state) == ("rotor_lost", "balancing", state)
     assert outcome.limits_violated == []
     assert truth["touching"].min() == 4
     assert tilt_deg(truth["quat"]).max() < tilt
-    assert outcome.hinge_force_max_n < 30.0
+    assert outcome.hinge_force_max_n < 40.0
     assert np.linalg.norm(truth["v"][-250:], axis=1).max() < 0.03
 
 
 @pytest.mark.parametrize("phase", ["hand_over", "lift"])
 def test_uav_stays_on_the_arm(phase):
-    check_held(lose(phase))
+    check_held(lose(phase), state="standing" if phase == "lift" else "held")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("rotor", [1, 2, 3, 4])
 @pytest.mark.parametrize("phase", ["capture", "hand_over", "carry", "set_down", *TAKEOFF])
 def test_uav_stays_on_the_arm_whichever_rotor_is_lost(phase, rotor):
-    check_held(lose(phase, rotor))
+    # At the begin of the lift the rails are still near.
+    check_held(lose(phase, rotor), state="standing" if phase == "lift" else "held")
 
 
 def test_topples_without_balancing(monkeypatch):
@@ -52,6 +53,7 @@ def test_topples_without_balancing(monkeypatch):
     monkeypatch.setattr("armland.mission.landing_setup.LANDING", phases)
     outcome = lose("carry")
     assert tilt_deg(since(outcome)["quat"]).max() > 40.0
+    assert outcome.state == "lost"
 
 
 @pytest.mark.slow
@@ -60,10 +62,11 @@ def test_topples_without_balancing(monkeypatch):
 def test_uav_near_the_rails_is_set_down(phase, after_s, rotor):
     outcome = lose(phase, rotor, after_s)
     truth = since(outcome)
-    assert outcome.end == "balancing"
+    # Just above the rails it may be down before it has tilted at all.
+    assert outcome.end in ("balancing", "done")
+    assert outcome.state == "standing"
     assert outcome.limits_violated == []
     assert tilt_deg(truth["quat"])[-250:].max() < 0.5
-    assert truth["cradle_force"][-250:, 2].min() > 0.5
 
 
 @pytest.mark.slow

@@ -167,7 +167,8 @@ def safe_end(records: NDArray[np.void], rate: int) -> str:
         return "lost"
     if still and late["cradle_force"][:, 2].min() > 1.0:
         return "standing"
-    if still and late["touching"].min() == 4:
+    # One that has toppled over its hinge and lies on the arm is not held, even where the magnet grips.
+    if still and late["touching"].min() == 4 and not late["foul"][:, 2].any():
         return "held"
     if (
         late["r"][:, 2].min() > 0.6

@@ -14,7 +14,7 @@ behind the wrist, which may stand between the cradle's rails, moves by little, a
 import numpy as np
 from numba import njit
 
-from armland.control.balance import BalanceGains, lean_of, predicted, push
+from armland.control.balance import BalanceGains, capture_angle, lean_of, predicted, push
 from armland.mission.landing_state import RING
 from armland.records import Record
 from armland.rotations import Array, from_rotation_vector, matrix, rotation_error
@@ -23,10 +23,16 @@ SETTLE_MPS = 0.04
 """Mean speed at which a UAV near the rails is set down."""
 
 
+SEAT_M = 0.0005
+"""How far below the rails it is set down: the arm's stiffness then presses it on."""
+
+BALANCED, SETTLED, GIVEN_UP = 0, 1, 2
+
+
 @njit(cache=True)
 def begin_balance(e: Record, p: Record, s: Record) -> None:
     """Anchor the pivot where it is, with the speed it has; decide whether the rails are near enough to be set down on."""
-    s.settling = 1 if e.r[2] - p.down < p.settle else 0
+    s.balancing = SETTLED if e.r[2] - p.down < p.settle else BALANCED
     for i in range(2):
         s.sway[i], s.sway_v[i], s.sway_a[i] = 0.0, e.v[i], 0.0
         s.sway_log[:, i] = e.v[i]
@@ -49,7 +55,10 @@ def refer_balance(elapsed: float, age: int, e: Record, p: Record, s: Record, r: 
     fade = np.exp(-elapsed / p.coast)
     r.r[2] = s.r0[2] + s.v0[2] * p.coast * (1.0 - fade)
     r.v[2], r.a[2] = s.v0[2] * fade, -s.v0[2] / p.coast * fade
-    if s.settling:
+    if s.balancing == BALANCED and capture_angle(e.quat, e.omega, p.fall_rate) > p.lost:
+        # It falls, whatever the arm does: less is broken if that rests.
+        s.balancing = GIVEN_UP
+    if s.balancing == SETTLED:
         _settle(elapsed, p, s, r)
     x, y, x_rate, y_rate = lean_of(e.quat, e.omega)
     now = e.tick % RING
@@ -57,7 +66,7 @@ def refer_balance(elapsed: float, age: int, e: Record, p: Record, s: Record, r: 
     for i in range(2):
         tilt, tilt_rate = (x, x_rate) if i == 0 else (y, y_rate)
         s.sway_log[now, i] = s.sway_v[i]
-        if s.settling or age > p.attitude_age:
+        if s.balancing != BALANCED or age > p.attitude_age:
             s.sway_a[i] = min(max(-s.sway_v[i] / p.coast, -p.push_max), p.push_max)
         else:
             gained = s.sway_v[i] - s.sway_log[(now - age) % RING, i]
@@ -76,7 +85,7 @@ def refer_balance(elapsed: float, age: int, e: Record, p: Record, s: Record, r: 
 
 @njit(cache=True)
 def _settle(elapsed: float, p: Record, s: Record, r: Record) -> None:
-    way = p.down - s.r0[2] - s.v0[2] * p.coast
+    way = p.down - SEAT_M - s.r0[2] - s.v0[2] * p.coast
     u = min(elapsed * SETTLE_MPS / max(abs(way), 1e-4), 1.0)
     # A smooth step: at rest at both ends.
     r.r[2] += u * u * (3.0 - 2.0 * u) * way

@@ -69,6 +69,7 @@ def parameters_layout(joints: int, phases: int) -> np.dtype:
             ("wrist", "f8"),  # m, from the wrist to the pivot
             ("attitude_age", "i8"),  # ticks, of an attitude that can be balanced by
             ("down", "f8"),  # m, height of the pivot when the UAV stands on the cradle
+            ("lost", "f8"),  # rad, capture point beyond which it cannot be balanced
             ("settle", "f8"),  # m, height above it below which a UAV is set down and not balanced
             ("near", "f8"),  # m, height above it at which the rails may touch
             ("capture_max", "f8"),  # rad, capture point at which a held UAV counts as falling
@@ -113,7 +114,7 @@ def memory_layout(joints: int) -> np.dtype:
             ("grip", "f8", (3,)),  # end effector where the magnet was switched off last
             ("yielded", "f8", (3,)),
             # Balance
-            ("settling", "i8"),
+            ("balancing", "i8"),  # see `landing_balance`
             ("sway", "f8", (2,)),  # m [w]
             ("sway_v", "f8", (2,)),  # m/s
             ("sway_a", "f8", (2,)),  # m/s²
