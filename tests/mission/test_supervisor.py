@@ -42,7 +42,8 @@ class Bench:
         for name in ("tick", "arm_tick", "wrench_tick", "uav_tick", "uav_heard"):
             self.m[name] = 1000
         self.e["quat"][0, 0], self.e["plate_valid"], self.h["joint_margin"] = 1.0, 1, 1.0
-        self.s["sigma"], self.s["seen"], self.s["started"] = 0.2, 1, 1
+        self.s["sigma"], self.s["seen"], self.s["started"], self.s["held"] = 0.2, 1, 1, 1
+        p["fall_rate"], p["capture_max"] = 6.0, np.deg2rad(3.0)
         self.s["grip_tick"] = 950
 
     def find(self, ticks=1, matters=ALL, bad=0, expected=np.nan, magnet_on=False, force_max=1e9):
@@ -94,7 +95,11 @@ def provoke(bench, fault):
             return {"magnet_on": True}
         case "overload":
             bench.e["hinge_force"][0, 0] = 107.0
+        case "rotor_lost":
+            # 0.6 rad/s at 6 rad/s of fall: 5.7 degrees that are still to come.
+            bench.e["omega"][0] = [0.0, 0.6, 0.0]
         case "uav_tilt":
+            bench.s["held"] = 0
             bench.e["quat"][0] = [np.cos(0.3), np.sin(0.3), 0.0, 0.0]
         case "slip":
             bench.s["grip_far"] = 2
@@ -162,7 +167,7 @@ def test_no_end_stops_a_flying_uav():
 
 def test_no_end_leaves_the_arm_without_stiffness():
     for end in FINALS:
-        assert end.arm in ("hold", "back_off", "yield", "brake")
+        assert end.arm in ("hold", "back_off", "yield", "brake", "balance")
 
 
 def test_healthy_moment_has_no_fault(bench):

@@ -21,6 +21,9 @@ FLYING_SPEED_MPS = 0.25
 FLYING_TILT_DEG = 10.0
 """Bounds of a UAV that flies off stable, at the end."""
 
+TOPPLED_DEG = 25.0
+"""Tilt beyond which a UAV on the magnet, or in the air, is out of control."""
+
 CRADLE_N = 0.2
 """Force on the rails that counts as a touchdown."""
 
@@ -177,12 +180,14 @@ def safe_end(records: NDArray[np.void], rate: int, speed: float = 0.0) -> str:
         return "lost"
     if still and late["cradle_force"][:, 2].min() > 1.0:
         return "standing"
-    if still and late["touching"].min() == 4:
+    # One that has toppled over its hinge is not held, even where the magnet grips; least of all one that lies on the arm.
+    toppled = late["foul"][:, 2].any() or tilt_deg(late["quat"]).max() > TOPPLED_DEG
+    if still and late["touching"].min() == 4 and not toppled:
         return "held"
     if (
         late["r"][:, 2].min() > 0.6
         and np.linalg.norm(late["v"], axis=1).max() < max(speed, 0.6)
-        and tilt_deg(late["quat"]).max() < 25.0
+        and tilt_deg(late["quat"]).max() < TOPPLED_DEG
     ):
         return "flying"
     return "lost"

@@ -37,6 +37,7 @@ class Fault(Section):
     phase: str | None = Field(None, description="phase at whose begin it is armed; the run's begin if absent")
     after_s: NonNegative = Field(0.0, description="time from there")
     lasts_s: Positive = Field(1e6, description="how long it lasts")
+    rotor: int = Field(1, ge=1, le=4, description="which rotor; only for `rotor_loss`")
     size: Finite = Field(
         1.0,
         description="drift in N/s, coil or magnet or rotor's share that is lost, load or push in N, twist in N·m, distance in m, "

@@ -18,6 +18,8 @@ from armland.mission.landing_arm import (
     refer,
     track,
 )
+from armland.mission.landing_arm import BALANCE as BALANCE_UAV
+from armland.mission.landing_balance import begin_balance, refer_balance
 from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, look_at_grip, tilt_of
 from armland.mission.landing_uav import AUTONOMOUS, BALANCE, CRUISE, LEVEL, STATION, command_uav, thrust_in_force
 from armland.mission.phase_table import next_phase
@@ -207,6 +209,7 @@ def landing_tick(
     now = m.tick
     row = phases[s.phase]
     held = row.held == 1
+    s.held = row.held
     # Estimate.
     e.thrust = thrust_in_force(now, p, s)
     estimate_arm(m, arm, e)
@@ -253,19 +256,23 @@ def landing_tick(
         elapsed, row, held = 0.0, phases[new], phases[new].held == 1
         if row.arm == JOIN:
             track(e, p, s, True)
+        elif row.arm == BALANCE_UAV:
+            begin_balance(e, p, s)
     t.mission.tick, t.mission.phase, t.mission.retries, t.mission.fault = now, s.phase, s.retries, s.fault
     t.mission.elapsed = elapsed
     # Reference and laws.
     track(e, p, s, False)
     t.reference.tick = now
     t.mission.progress = refer(row.arm, elapsed, row.duration, s.phase, e, p, s, t.reference)
+    if row.arm == BALANCE_UAV:
+        refer_balance(elapsed, now - m.uav_tick, e, p, s, t.reference)
     for i in range(4):
         t.reference.quat[i] = s.q_d[i]
     c.magnet = row.magnet
     c.brake = 1 if row.arm == BRAKE else 0
     if held:
         held_force(e, t.reference, p, s, row.observe == 1)
-    arm_torque(held, m, e, t.reference, p, arm, s, c)
+    arm_torque(held, row.arm == BALANCE_UAV, m, e, t.reference, p, arm, s, c)
     if row.arm == BRAKE:
         # What the last good sample says that holds it, should a brake let go; no law runs on it.
         for i in range(m.q.shape[0]):

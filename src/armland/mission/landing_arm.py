@@ -16,13 +16,14 @@ from numba import njit
 
 from armland.control.exact import ExactGains, Reference, UavParameters, exact_law
 from armland.control.impedance import elbow_field, orientation_pd, range_field
+from armland.mission.landing_balance import lean_acceleration, load_force
 from armland.mission.launch_reference import leave, run_up
 from armland.mission.phases import ARM
 from armland.models.operational import null_space_torque
 from armland.records import Record
 from armland.rotations import cross, matrix
 
-HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, BRAKE, LAUNCH, LEAVE = range(len(ARM))
+HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, BRAKE, LAUNCH, LEAVE, BALANCE = range(len(ARM))
 
 GRAVITY = 9.81
 
@@ -166,7 +167,9 @@ def accelerate(held: bool, e: Record, r: Record, p: Record, s: Record, c: Record
 
 
 @njit(cache=True)
-def arm_torque(held: bool, m: Record, e: Record, r: Record, p: Record, arm: Record, s: Record, c: Record) -> None:
+def arm_torque(
+    held: bool, balances: bool, m: Record, e: Record, r: Record, p: Record, arm: Record, s: Record, c: Record
+) -> None:
     """Fill the joint torques: τ_j = g + Cφ̇ + τ_nsp + 𝒥ᵀ(Λ(ẍ − 𝒥̇φ̇) + (F_EE, τ_ori)). Source: (6), (35), (X.2)."""
     n = m.q.shape[0]
     omega = np.zeros(3)
@@ -176,6 +179,10 @@ def arm_torque(held: bool, m: Record, e: Record, r: Record, p: Record, arm: Reco
     torque = orientation_pd(arm.rotation, p.R_d, omega, p.orientation_kp, p.orientation_kd)
     desired = np.zeros(6)
     desired[0], desired[1], desired[2] = accelerate(held, e, r, p, s, c)
+    if balances:
+        load_force(e, p, s, c)
+        torque[:] = 0.0
+        desired[3:] = lean_acceleration(omega, arm.rotation, p, s)
     desired -= arm.acceleration_bias
     wrench = np.zeros(6)
     for i in range(3):

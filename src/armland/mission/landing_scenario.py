@@ -130,6 +130,11 @@ class Envelope(Section):
         0.010, description="offset of the held plate, as the camera sees it, that counts as slipped off"
     )
     tilt_deg: Positive = Field(30.0, description="tilt of the UAV at which it counts as out of control")
+    capture_deg: Positive = Field(
+        3.0, description="tilt plus tilt rate over the rate of fall at which a UAV on the hinge counts as falling"
+    )
+    balance_push_mps2: Positive = Field(15.0, description="largest acceleration with which the arm balances a UAV")
+    balance_reach_m: Positive = Field(0.11, description="how far the arm may move a UAV that it balances, each axis")
 
 
 class Landing(Section):
@@ -150,6 +155,9 @@ class Landing(Section):
     onboard_kp_nm: Positive3 = (2.0, 2.0, 1.2)
     onboard_kd_nms: Positive3 = (0.18, 0.18, 0.20)
     onboard_lead_s: NonNegative = 0.05
+    onboard_rotor_watch: NonNegative = Field(
+        0.75, le=0.95, description="share of its due thrust below which a rotor counts as lost on board; 0: no watch"
+    )
     carry_share: Positive = Field(
         0.5, description="share of the weight that the rotors carry while the arm moves the UAV"
     )

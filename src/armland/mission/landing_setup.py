@@ -5,6 +5,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from armland.control.balance import balance_gains, fall_rate
 from armland.control.exact import UavParameters
 from armland.control.gains import Wanted, exact_gains
 from armland.errors import ConfigurationError
@@ -145,8 +146,21 @@ def _parameters(
     p["camera"], p["drag"] = landing.eye.camera_m, landing.rotors.drag_nspm
     if launch is not None:
         set_launch(p, launch, landing, d, [phase.name for phase in phases])
+    _balance(p, scenario, arm, uav, rate)
     _supervisor(p, landing, rate)
     return p
+
+
+def _balance(p: NDArray[np.void], scenario: LandingScenario, arm: ArmModel, uav: UavParameters, rate: int) -> None:
+    rate_of_fall, place = fall_rate(uav), scenario.landing.place
+    p["fall_rate"], p["balance"] = rate_of_fall, balance_gains(rate_of_fall)
+    v = scenario.landing.envelope
+    p["push_max"], p["sway_max"], p["capture_max"] = v.balance_push_mps2, v.balance_reach_m, np.deg2rad(v.capture_deg)
+    # The last joint but one tilts the tool: where it sits is the wrist. At this share the pivot may be fastest: 0.9 to 1.1 m/s
+    # across the corners of its reach, against 0.6 m/s of the wrist alone and 0.3 m/s of the arm without it.
+    p["swing"], p["wrist"] = 0.75, np.linalg.norm(arm.position - arm.anchor[-2])
+    p["attitude_age"], p["lost"] = round(0.05 * rate), v.balance_reach_m * rate_of_fall**2 / GRAVITY
+    p["down"], p["settle"], p["near"] = place.put_down_m[2], 0.025, 0.010
 
 
 def _supervisor(p: NDArray[np.void], landing: Landing, rate: int) -> None:

@@ -65,6 +65,19 @@ def parameters_layout(joints: int, phases: int) -> np.dtype:
             ("coast", "f8"),  # s, in which the reference comes to rest
             ("admittance", "f8"),  # m/s/N, of a yielding arm
             ("admittance_max", "f8"),  # m
+            # Balance
+            ("balance", "f8", (4,)),  # gains of (B.3)
+            ("fall_rate", "f8"),  # rad/s
+            ("push_max", "f8"),  # m/s²
+            ("sway_max", "f8"),  # m
+            ("swing", "f8"),  # share of the pivot's way that the wrist makes
+            ("wrist", "f8"),  # m, from the wrist to the pivot
+            ("attitude_age", "i8"),  # ticks, of an attitude that can be balanced by
+            ("down", "f8"),  # m, height of the pivot when the UAV stands on the cradle
+            ("lost", "f8"),  # rad, capture point beyond which it cannot be balanced
+            ("settle", "f8"),  # m, height above it below which a UAV is set down and not balanced
+            ("near", "f8"),  # m, height above it at which the rails may touch
+            ("capture_max", "f8"),  # rad, capture point at which a held UAV counts as falling
             # Camera
             ("camera", "f8", (3,)),  # m, end effector frame
             # Supervisor
@@ -106,6 +119,15 @@ def memory_layout(joints: int) -> np.dtype:
             ("pa", "f8", (3,)),
             ("grip", "f8", (3,)),  # end effector where the magnet was switched off last
             ("yielded", "f8", (3,)),
+            # Balance
+            ("balancing", "i8"),  # see `landing_balance`
+            ("sway", "f8", (2,)),  # m [w]
+            ("sway_v", "f8", (2,)),  # m/s
+            ("sway_a", "f8", (2,)),  # m/s²
+            ("sway_log", "f8", (RING, 2)),  # m/s, the pivot's velocity
+            ("lean", "f8", (3,)),  # rad [w]
+            ("lean_v", "f8", (3,)),  # rad/s
+            ("lean_a", "f8", (3,)),  # rad/s²
             # UAV
             ("thrust_log", "f8", (RING,)),
             ("thrust", "f8"),  # command

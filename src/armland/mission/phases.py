@@ -93,10 +93,10 @@ class Phase(NamedTuple):
     """Whether the mission ends here."""
 
 
-ARM = ("hold", "join", "track", "close", "move", "back_off", "yield", "brake", "launch", "leave")
+ARM = ("hold", "join", "track", "close", "move", "back_off", "yield", "brake", "launch", "leave", "balance")
 """Reference of the arm: rest where it is; septic blend from rest to below the plate; below the plate; the gap to the plate closes;
 septic move to the phase's target; septic move away downwards from where it is; give way to the hinge force; brakes on; run-up to the
-speed that the UAV is given, then on at it; down from below the UAV at its speed, and to rest."""
+speed that the UAV is given, then on at it; down from below the UAV at its speed, and to rest; balance the UAV."""
 
 UAV = ("autonomous", "station", "level", "ramp", "balance", "off", "run_up", "cruise")
 """The UAV hovers by itself; keeps its station by the ground's estimate; level with the thrust it has; level with a

@@ -14,6 +14,10 @@ REMEDIES: dict[str, tuple[str, str]] = {
     ),
     "magnet_coil": ("the magnet's coil does not carry its current", "check coil and supply, repeat the self-test"),
     "overload": ("the hinge force exceeds what the magnet may be loaded with", "look for what pushes or has jammed"),
+    "rotor_lost": (
+        "the UAV begins to fall over on its hinge: a rotor is lost",
+        "look at its motors before it flies again",
+    ),
     "uav_tilt": ("the UAV is tilted beyond control", "stop its rotors and look at it"),
     "slip": ("the plate has slid off the magnet or the load is gone", "clean magnet and plate, check the rating"),
     "near_limit": (
@@ -29,6 +33,7 @@ STANDING: dict[str, str] = {
     "abort": "the arm has drawn back and holds, the magnet is off, the UAV flies by itself",
     "holding": "the arm holds the UAV by the magnet, the UAV stays level with the thrust it has",
     "hanging": "the arm holds the UAV by the magnet, its rotors stopped",
+    "balancing": "the arm balances the UAV upright on its hinge, or has set it down on the rails, its rotors stopped, the magnet on",
     "let_fly": "the arm has drawn back, the magnet is off, the UAV flies by itself",
     "secured": "the UAV stands on the cradle with its rotors stopped, the magnet on, the arm gives way",
     "braked_refused": "nothing has begun: the arm's brakes are on, the magnet is off, the UAV does what it did before",

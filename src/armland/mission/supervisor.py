@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from armland.control.balance import capture_angle
 from armland.mission.phases import Phase
 from armland.mission.records import Limit
 from armland.records import Record
@@ -33,6 +34,7 @@ FAULTS = (
     "wrench_drift",
     "magnet_coil",
     "overload",
+    "rotor_lost",
     "uav_tilt",
     "slip",
     "near_limit",
@@ -53,6 +55,7 @@ FAULT_TABLE: dict[str, dict[str, str]] = {
         "wrench_drift": "refused      abort       -           holding     secured     secured",
         "magnet_coil": "refused       -           abort       holding     -           secured",
         "overload": "  refused        abort       abort       holding     secured     secured",
+        "rotor_lost": "-              -           balancing   balancing   -           -",
         "uav_tilt": "  refused        abort       abort       hanging     secured     secured",
         "slip": "      -              -           -           let_fly     -           -",
         "near_limit": "braked_refused braked_free braked_free braked_held braked_down braked_down",
@@ -70,6 +73,7 @@ ESCALATION: dict[str, dict[str, str]] = {
     "let_fly": {"arm_stale": "braked_free"},
     "holding": {"arm_stale": "braked_held", "uav_tilt": "hanging", "slip": "let_fly"},
     "hanging": {"arm_stale": "braked_held"},
+    "balancing": {"arm_stale": "braked_held"},
     "secured": {"arm_stale": "braked_down"},
     "braked_held": {"slip": "braked_free"},
 }
@@ -82,6 +86,7 @@ GRAVITY_OF = {
     "holding": 1,
     "secured": 1,
     "hanging": 2,
+    "balancing": 2,
     "let_fly": 2,
     "braked_refused": 3,
     "braked_held": 3,
@@ -101,12 +106,13 @@ arm braked; over nothing. Escalation only ever goes up, so it ends."""
     WRENCH_DRIFT,
     MAGNET_COIL,
     OVERLOAD,
+    ROTOR_LOST,
     UAV_TILT,
     SLIP,
     NEAR_LIMIT,
 ) = range(len(FAULTS))
 
-DEBOUNCE_TICKS = (0, 20, 1, 1, 1, 1, 300, 20, 3, 40, 50, 20)
+DEBOUNCE_TICKS = (0, 20, 1, 1, 1, 1, 300, 20, 3, 5, 40, 50, 20)
 """Ticks for which each fault's sign must be seen. Ages are debounced by themselves."""
 
 L_POSITION, L_SPEED, L_TORQUE, L_RATE, L_SINGULAR, L_FORCE, L_FINITE = (
@@ -196,6 +202,9 @@ def find_fault(
         # Nobody sees it: what the arm should carry is not there.
         signs[SLIP] = expected > LOAD_N and force < LOAD_LEFT * expected
     signs[OVERLOAD] = force > min(force_max, p.hinge_max)
+    # Next to the rails touching them tilts it too.
+    most = p.capture_max * (2.0 if e.r[2] < p.down + p.near else 1.0)
+    signs[ROTOR_LOST] = s.held == 1 and capture_angle(e.quat, e.omega, p.fall_rate) > most
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
     signs[NEAR_LIMIT] = h.joint_margin < p.joint_margin or s.sigma < p.sigma_min or h.speed_ratio > p.speed_share
     for f in range(1, len(FAULTS)):

@@ -145,6 +145,7 @@ class LandingPlant:
             self._state["rotor"] = self._state["rotor_asked"] = thrust / ROTORS * drawn.thrust_factor
             d.xfrc_applied[s.uav_body] = [0.0, 0.0, s.uav_mass * 9.81, 0.0, 0.0, 0.0]
             self._state["lift"] = self._state["rotor"]
+            self._state["rotor_due"] = self._state["rotor"]
         self._state["arrived"][0, 5] = UavMode.AUTONOMOUS if flying else UavMode.OFF
         self._state["arrived"][0, 0] = 1.0
         mujoco.mj_forward(s.model, d)
@@ -270,6 +271,7 @@ def _parameters(scenario: LandingScenario, scene: LandingScene, drawn: Draw) -> 
     p["link_period"], p["onboard_period"] = rate // link.rate_hz, rate // onboard.rate_hz
     p["watchdog"], p["climb"] = round(UAV_WATCHDOG_S * rate), CLIMB_M
     p["kp"], p["kd"], p["lead"] = landing.onboard_kp_nm, landing.onboard_kd_nms, landing.onboard_lead_s
+    p["watch"] = landing.onboard_rotor_watch
     p["onboard_s"], p["mass"], p["tick_s"] = 1.0 / onboard.rate_hz, scene.uav_mass + landing.extra_mass_kg, 1.0 / rate
     position = np.array([scene.model.site(f"{UAV}rotor_{i + 1}").pos for i in range(ROTORS)])
     A = mixer(position - scene.model.site(f"{UAV}cm").pos, rotors.drag_torque_m)

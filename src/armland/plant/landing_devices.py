@@ -25,6 +25,7 @@ PARAMETERS = np.dtype(
         ("kp", "f8", (3,)),
         ("kd", "f8", (3,)),
         ("lead", "f8"),  # s
+        ("watch", "f8"),  # share of its due thrust below which a rotor counts as lost
         ("onboard_s", "f8"),
         ("mass", "f8"),
         ("mixer", "f8", (4, 4)),
@@ -74,6 +75,9 @@ STATE = np.dtype(
         ("rotor", "f8", (4,)),  # thrust that each would give at rest, N
         ("lift", "f8", (4,)),  # thrust that each gives, N
         ("air", "f8", (3,)),  # velocity of the air, m/s, world
+        ("rotor_due", "f8", (4,)),  # N, what the rotors would give if all were well
+        ("weak", "i8"),  # samples for which a rotor has given too little
+        ("cut", "i8"),  # 1: stopped its rotors itself
         # Faults, written by the plant.
         ("uplink_lost", "i8"),
         ("downlink_lost", "i8"),
@@ -255,6 +259,7 @@ def actuate(
     R = matrix(multiply(t.quat, from_rotation_vector(t.omega * p.tick_s)))
     wrench = np.zeros(4)
     for k in range(4):
+        s.rotor_due[k] += p.rotor_gain * (s.rotor_asked[k] - s.rotor_due[k])
         s.rotor[k] += p.rotor_gain * (s.rotor_asked[k] * p.thrust_factor * s.health[k] - s.rotor[k])
     _rotors_in_air(R, t, p, s)
     for k in range(4):

@@ -127,7 +127,7 @@ class FaultSchedule:
             case "magnet_slip":
                 magnet["rated"] *= 1.0 - fault.size
             case "rotor_loss":
-                state["health"][0, 0] = 1.0 - fault.size
+                state["health"][0, fault.rotor - 1] = 1.0 - fault.size
             case "overload":
                 state["force"][0, 2] = -fault.size
             case "unreachable":

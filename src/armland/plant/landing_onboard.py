@@ -6,6 +6,7 @@
 
 A UAV whose link is silent for longer than its watchdog helps itself: flying, it hovers by its own position estimate (optical
 flow and sonar) and climbs away; held, it stays level with the thrust it has; on the cradle it lets the rotors run down.
+A held UAV stops all its rotors where one of them gives less than its due: the arm carries it.
 """
 
 import numpy as np
@@ -27,7 +28,14 @@ DERIVATIVE_LAG_S = 0.01
 RUN_DOWN = 3.0
 """N/s at which a UAV without link that stands on the cradle takes its thrust back."""
 
-AUTONOMOUS, GUIDED, LANDED, OFF = UavMode.AUTONOMOUS, UavMode.GUIDED, UavMode.LANDED, UavMode.OFF
+WATCHED_N = 0.3
+"""Thrust from which on a rotor is watched, N."""
+
+WEAK_SAMPLES = 2
+"""Samples in a row that make a weak rotor a lost one."""
+
+AUTONOMOUS, GUIDED, HELD = UavMode.AUTONOMOUS, UavMode.GUIDED, UavMode.HELD
+LANDED, OFF = UavMode.LANDED, UavMode.OFF
 
 
 @njit(cache=True)
@@ -59,13 +67,25 @@ def fly(tick: int, p: Record, s: Record, t: Record, noise: Array) -> None:
             s.thrust = max(s.thrust - RUN_DOWN * p.onboard_s, 0.0)
         elif not silent:
             s.thrust = s.arrived[4]
-    if s.thrust <= 0.0:
+    if _watch(mode, p, s) or s.thrust <= 0.0:
         for k in range(4):
             s.rotor_asked[k] = 0.0
         return
     rotor = allocate(s.thrust, _attitude(q_d, p, s), p.mixer_inverse, p.rotor_min, p.rotor_max)
     for k in range(4):
         s.rotor_asked[k] = rotor[k]
+
+
+@njit(cache=True)
+def _watch(mode: int, p: Record, s: Record) -> bool:
+    # Each motor's speed is known on board. Held, a UAV with a lost rotor stops the others: all four run down alike, and what
+    # tips it over is no more than what came before. Flying, it has no better choice than to go on.
+    weak = False
+    for k in range(4):
+        weak = weak or (s.rotor_due[k] > WATCHED_N and s.rotor[k] < p.watch * s.rotor_due[k])
+    s.weak = s.weak + 1 if weak else 0
+    s.cut = 1 if mode == HELD and (s.cut or s.weak >= WEAK_SAMPLES) else 0
+    return bool(s.cut)
 
 
 @njit(cache=True)

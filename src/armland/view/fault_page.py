@@ -102,10 +102,12 @@ def signs() -> dict[str, str]:
         "wrench_stale": f"force sample older than {v.wrench_age_ms:g} ms",
         "wrench_drift": "vertical hinge force 2.5 N off what load and thrust explain, where they do",
         "magnet_coil": "coil current below what 0.9 of the rated pull needs, 0.15 s after it was switched on",
-        "overload": f"hinge force above {v.hinge_force_share:g} of the magnet's rating",
+        "overload": f"hinge force above what healthy flights of the phase make, at most {v.hinge_force_share:g} of the magnet's rating",
+        "rotor_lost": f"tilt plus tilt rate over the rate of fall above {v.capture_deg:g}° while the UAV is held",
         "uav_tilt": f"tilt above {v.tilt_deg:g}°",
         "slip": f"plate more than {1e3 * v.slip_m:g} mm off in two images in a row; "
-        f"without an image of the last {1e3 * SEEN_S:g} ms, less than {LOAD_LEFT:g} of an expected load above {LOAD_N:g} N; never with a silent UAV",
+        f"without an image of the last {1e3 * SEEN_S:g} ms, less than {LOAD_LEFT:g} of an expected load above {LOAD_N:g} N; "
+        "never with a silent UAV",
         "near_limit": f"joint within {v.joint_margin_rad:g} rad of its end, singular value below {v.sigma_min:g}, or joint speed "
         f"above {v.joint_speed_share:g} of its limit",
     }
