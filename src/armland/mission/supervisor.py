@@ -91,6 +91,9 @@ L_POSITION, L_SPEED, L_TORQUE, L_RATE, L_SINGULAR, L_FORCE, L_FINITE = (
     Limit.NON_FINITE,
 )
 
+CAUGHT_S = 0.2
+"""Time for which a UAV that was caught may lean as in flight."""
+
 DAMPER = 20.0
 """N·m·s/rad that replaces a torque which is cut."""
 
@@ -153,8 +156,9 @@ def find_fault(
     signs[MAGNET_COIL] = magnet_on and m.magnet_fault == 1
     signs[SLIP] = e.plate_valid == 1 and apart > p.slip**2
     signs[OVERLOAD] = force > p.hinge_max
-    # Next to the rails touching them tilts it too.
-    most = p.capture_max * (2.0 if e.r[2] < p.down + p.near else 1.0)
+    # Touching the rails tilts it too, and when it is caught it still leans from its flight.
+    early = m.tick - s.caught < CAUGHT_S / p.tick_s
+    most = p.capture_max * (2.0 if early or e.r[2] < p.down + p.near else 1.0)
     signs[ROTOR_LOST] = s.held == 1 and capture_angle(e.quat, e.omega, p.fall_rate) > most
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
     signs[NEAR_LIMIT] = h.joint_margin < p.joint_margin or s.sigma < p.sigma_min
