@@ -112,7 +112,7 @@ def enter(
         for i in range(3):
             s.grip[i] = t.estimate.r[i]
     if phases[new].held and not phases[s.phase].held:
-        s.observing = 0
+        s.observing, s.caught = 0, tick
         for i in range(3):
             s.d[i] = s.force[i] = 0.0
     s.retries += 1 if new == miss else 0

@@ -111,6 +111,7 @@ def memory_layout(joints: int) -> np.dtype:
             ("retries", "i8"),
             ("fault", "i8"),
             ("held", "i8"),
+            ("caught", "i8"),  # tick at which the UAV was held first
             # Reference of the arm
             ("r0", "f8", (3,)),
             ("v0", "f8", (3,)),

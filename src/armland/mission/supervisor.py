@@ -131,6 +131,9 @@ SEEN_S = 0.15
 LOAD_N, LOAD_LEFT = 2.0, 0.3
 """A load of this much, of which less than that share is felt, is gone."""
 
+CAUGHT_S = 0.2
+"""Time for which a UAV that was caught may lean as in flight."""
+
 DAMPER = 20.0
 """N·m·s/rad that replaces a torque which is cut."""
 
@@ -202,8 +205,9 @@ def find_fault(
         # Nobody sees it: what the arm should carry is not there.
         signs[SLIP] = expected > LOAD_N and force < LOAD_LEFT * expected
     signs[OVERLOAD] = force > min(force_max, p.hinge_max)
-    # Next to the rails touching them tilts it too.
-    most = p.capture_max * (2.0 if e.r[2] < p.down + p.near else 1.0)
+    # Touching the rails tilts it too, and when it is caught it still leans from its flight.
+    early = m.tick - s.caught < CAUGHT_S / p.tick_s
+    most = p.capture_max * (2.0 if early or e.r[2] < p.down + p.near else 1.0)
     signs[ROTOR_LOST] = s.held == 1 and capture_angle(e.quat, e.omega, p.fall_rate) > most
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
     signs[NEAR_LIMIT] = h.joint_margin < p.joint_margin or s.sigma < p.sigma_min or h.speed_ratio > p.speed_share
