@@ -45,7 +45,8 @@ _NOTES = """\
   longer hears is found as fast as one that no longer speaks.
 - **A magnet that dies while it carries is not felt at once.** Half the weight still presses the plate onto the face, the force does not
   change, and the plate slides off at 1 to 4 cm/s. Images alone show it. At 10 mm the plate still rests on its pads; the UAV gets
-  its thrust back while it stands there, and the arm draws back below it: it neither falls nor is touched. With the camera blind as
+  its thrust back while it stands there, and the arm draws back below it: it sinks by 10 cm at 0.3 m/s at most while its hover
+  takes over, and is not touched. With the camera blind as
   well, the missing load is all there is to see, the UAV is 50 ms further on its way, sinks at 0.7 m/s and touches the tool.
 - **A silent UAV on a dead magnet is left lying on it**: it could not be given its thrust back.
 - **A UAV that does not obey** is found as a force that load and thrust do not explain. It is held, and nothing else is decided: it
@@ -106,8 +107,8 @@ def signs() -> dict[str, str]:
         "rotor_lost": f"tilt plus tilt rate over the rate of fall above {v.capture_deg:g}° while the UAV is held",
         "uav_tilt": f"tilt above {v.tilt_deg:g}°",
         "slip": f"plate more than {1e3 * v.slip_m:g} mm off in two images in a row; "
-        f"without an image of the last {1e3 * SEEN_S:g} ms, less than {LOAD_LEFT:g} of an expected load above {LOAD_N:g} N; "
-        "never with a silent UAV",
+        f"without an image of the last {1e3 * SEEN_S:g} ms, less than {LOAD_LEFT:g} of an expected load "
+        f"above {LOAD_N:g} N; never with a silent UAV",
         "near_limit": f"joint within {v.joint_margin_rad:g} rad of its end, singular value below {v.sigma_min:g}, or joint speed "
         f"above {v.joint_speed_share:g} of its limit",
     }
