@@ -150,6 +150,7 @@ BLIND = {
     "wrench_drift": ("landing", "held", ("wrench_drift",)),
     "magnet_coil": ("landing", "touch", ("magnet_coil",)),
     "overload": ("landing", "held", ("overload",)),
+    "rotor_lost": ("landing", "held", ("rotor_lost",)),
     "uav_tilt": ("takeoff", "touch", ("uav_tilt",)),
     "slip": ("landing", "held", ("slip",)),
     "near_limit": ("landing", "touch", ("near_limit",)),

@@ -29,10 +29,10 @@ def measurement(tick=100):
 def test_sample_that_is_no_number_keeps_the_last_one_and_stops_its_clock_alone(field, clock):
     good, m = np.zeros(1, landing_layout("measurement", 7)), measurement()
     m[field] = 0.01
-    assert screened(m[0], good[0]) == 0
+    assert screened(m[0], good[0], False) == 0
     m = measurement(101)
     m[field][0, 1] = np.nan
-    assert screened(m[0], good[0]) == 1
+    assert screened(m[0], good[0], False) == 1
     assert m[field][0, 1] == 0.01
     for name in ("arm_tick", "wrench_tick", "uav_tick"):
         assert m[name][0] == (100 if name == clock else 101)
@@ -42,13 +42,29 @@ def test_sample_that_is_no_number_keeps_the_last_one_and_stops_its_clock_alone(f
 def test_joint_that_leaps_is_not_believed(step, bad):
     good, m = np.zeros(1, landing_layout("measurement", 7)), measurement()
     m["q"] = 1.0
-    assert screened(m[0], good[0]) == 0
+    assert screened(m[0], good[0], False) == 0
     m = measurement(101)
     m["q"] = 1.0
     m["q"][0, 3] += step
-    assert screened(m[0], good[0]) == bad
+    assert screened(m[0], good[0], False) == bad
     assert m["q"][0, 3] == (1.0 if bad else 1.0 + step)
     assert m["arm_tick"][0] == (100 if bad else 101)
+
+
+@pytest.mark.parametrize(
+    ("held", "turn", "rate", "believed"),
+    [(True, 0.8, 0.0, False), (False, 0.8, 0.0, True), (True, 0.05, 0.0, True), (True, 0.8, 100.0, True)],
+)
+def test_attitude_that_leaps_is_not_believed_of_a_uav_that_is_held(held, turn, rate, believed):
+    good, m = np.zeros(1, landing_layout("measurement", 7)), measurement()
+    assert screened(m[0], good[0], held) == 0
+    # It stays there: a sample that was not believed does not become true by being repeated.
+    for tick in (105, 110, 115):
+        m = measurement(tick)
+        m["uav_quat"][0], m["uav_rate"][0, 0] = from_rotation_vector(np.array([turn, 0.0, 0.0])), rate
+        screened(m[0], good[0], held)
+        assert (m["uav_tick"][0] == tick) == believed
+        assert (m["uav_quat"][0, 1] > 0.0) == believed
 
 
 def image(plate, arm, uav):

@@ -14,8 +14,8 @@ from armland.mission.supervisor import FAULTS
 
 SEED = 1
 
-REST_M = 0.002
-"""Way of the end effector in the last half second in which it counts as at rest."""
+REST_M, BALANCED_M = 0.002, 0.010
+"""Way of the end effector in the last half second in which it counts as at rest; in which it balances a UAV."""
 
 FALL_MPS = 1.2
 """Downward speed that the landing's judge calls a fall."""
@@ -96,7 +96,7 @@ def unsafe(flight: Flight) -> list[str]:
         why.append("a joint torque beyond its limit")
     if np.abs(np.diff(tau[1:], axis=0)).max() > 1.001 * p["torque_rate"] * p["tick_s"]:
         why.append("a joint torque jumped")
-    if np.ptp(late["truth"]["ee"], axis=0).max() > REST_M:
+    if np.ptp(late["truth"]["ee"], axis=0).max() > (BALANCED_M if end.arm == "balance" else REST_M):
         why.append("the arm does not come to rest")
     if (np.abs(late["command"]["tau"]).max(axis=1) < 1.0).any():
         why.append("the arm has no torque")

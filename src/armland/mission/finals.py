@@ -7,7 +7,6 @@ FINALS = (
     Phase("refused", kind="end", arm="hold", uav="autonomous", final=True),
     Phase("abort", kind="end", arm="back_off", uav="autonomous", duration_s=1.0, final=True),
     Phase("holding", kind="end", arm="hold", uav="level", magnet="on", link="held", final=True),
-    Phase("hanging", kind="end", arm="hold", uav="off", magnet="on", link="held", final=True),
     Phase("balancing", kind="end", arm="balance", uav="off", magnet="on", link="landed", final=True),
     Phase("let_fly", kind="end", arm="back_off", uav="autonomous", duration_s=1.0, final=True),
     Phase("secured", kind="end", arm="yield", uav="ramp", share=0.0, magnet="on", link="landed", final=True),
@@ -19,7 +18,7 @@ FINALS = (
 """Ends of a landing: reached the goal, or one of the safe states. Below each, the arm's part, the UAV's and the magnet's.
 
 `abort`: the arm draws back and holds, the UAV flies by itself. `holding`: the arm holds the UAV, which stays level with the
-thrust it has: without it, it would topple over its hinge. `hanging`: the arm holds a UAV that cannot stay level, rotors stopped.
+thrust it has: without it, it would topple over its hinge.
 `balancing`: rotors stopped, the arm moves the pivot below the UAV so that it stays upright; near the rails it sets it down.
 `let_fly`: the magnet has lost its grip, so the UAV gets its thrust back and the arm makes room.
 `secured`: the UAV stands on the cradle, the arm gives way, the magnet stays on. `braked_…`: the arm's brakes are on.

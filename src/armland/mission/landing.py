@@ -21,7 +21,7 @@ from armland.mission.landing_arm import (
 from armland.mission.landing_arm import BALANCE as BALANCE_UAV
 from armland.mission.landing_balance import begin_balance, refer_balance
 from armland.mission.landing_estimate import estimate_arm, estimate_load, estimate_plate, look_at_grip, tilt_of
-from armland.mission.landing_uav import AUTONOMOUS, BALANCE, CRUISE, LEVEL, STATION, command_uav, thrust_in_force
+from armland.mission.landing_uav import AUTONOMOUS, BALANCE, CRUISE, HELD, LEVEL, STATION, command_uav, thrust_in_force
 from armland.mission.phase_table import next_phase
 from armland.mission.phases import MAGNET, SIGNAL, SIGNALS
 from armland.mission.supervisor import find_fault, limit
@@ -209,7 +209,7 @@ def landing_tick(
     now = m.tick
     row = phases[s.phase]
     held = row.held == 1
-    s.held = row.held
+    s.held = 1 if held or (row.final == 1 and row.link == HELD) else 0
     # Estimate.
     e.thrust = thrust_in_force(now, p, s)
     estimate_arm(m, arm, e)

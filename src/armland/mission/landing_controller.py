@@ -77,7 +77,7 @@ class LandingController:
     def update(self, tick: LandingTick) -> None:
         """Fill estimate, mission, reference, command and health of `tick` from its measurement."""
         arm, m = self.arm, tick.measurement
-        bad = admit(m, self._good, arm.qpos, arm.qvel)
+        bad = admit(m, self._good, self.memory, arm.qpos, arm.qvel)
         arm.refresh(velocity_terms=True)
         if self._first or int(m["tick"][0]) % SINGULARITY_PERIOD == 0:
             self.memory["sigma"] = smallest_singular_value(arm.jacobian)

@@ -22,6 +22,9 @@ from armland.rotations import Array, conjugate, matrix, multiply
 LEAP = 0.05
 """rad from one sample to the next that no joint can move: 50 rad/s at 1 kHz, where the fastest is rated 3.14."""
 
+ATTITUDE_LEAP = 0.15
+"""Turn of the UAV's attitude between two samples, beyond what its rates explain, rad, that no UAV makes."""
+
 
 @njit(cache=True)
 def quaternion_of(R: Array) -> Array:
@@ -171,25 +174,31 @@ def estimate_load(
 
 
 @njit(cache=True)
-def admit(measurement: NDArray[np.void], good: NDArray[np.void], qpos: Array, qvel: Array) -> int:
+def admit(
+    measurement: NDArray[np.void], good: NDArray[np.void], memory: NDArray[np.void], qpos: Array, qvel: Array
+) -> int:
     """Screen a `measurement` (1,) and hand its joints (n,) to the arm model; returns how many numbers were not finite."""
     m = measurement[0]
-    bad = screened(m, good[0])
+    bad = screened(m, good[0], memory[0].held == 1)
     for i in range(qpos.shape[0]):
         qpos[i], qvel[i] = m.q[i], m.qd[i]
     return bad
 
 
 @njit(cache=True)
-def screened(m: Record, good: Record) -> int:
-    """Replace what is not finite, or a joint that leaps, by the last good value; returns how many numbers that were.
+def screened(m: Record, good: Record, held: bool) -> int:
+    """Replace what is not finite, or leaps, by the last good value; returns how many numbers that were.
 
-    A sample that cannot be used counts as not arrived: its device's clock stands still, for the watchdogs to see.
+    A sample that cannot be used counts as not arrived: its device's clock stands still, for the watchdogs to see. Of the UAV's
+    attitude a leap counts while it is `held`: there a false tilt would stop its rotors and move the arm.
     """
     if good.tick > 0:
         for i in range(m.q.shape[0]):
             if abs(m.q[i] - good.q[i]) > LEAP:
                 m.q[i] = np.nan
+    if held and _leaps(m, good):
+        for i in range(4):
+            m.uav_quat[i] = np.nan
     arm = _kept(m.q, good.q) + _kept(m.qd, good.qd)
     wrench = _kept(m.wrench, good.wrench)
     uav = _kept(m.uav_quat, good.uav_quat) + _kept(m.uav_rate, good.uav_rate)
@@ -208,6 +217,18 @@ def screened(m: Record, good: Record) -> int:
             m.camera_fresh = 0
             bad += 1
     return int(bad)
+
+
+@njit(cache=True)
+def _leaps(m: Record, good: Record) -> bool:
+    # Further from the last good attitude than the rates, as they were and as they are, can have turned it.
+    same, rate = 0.0, 0.0
+    for i in range(4):
+        same += m.uav_quat[i] * good.uav_quat[i]
+    for i in range(3):
+        rate += max(m.uav_rate[i] ** 2, good.uav_rate[i] ** 2)
+    turned = 2.0 * np.arccos(min(abs(same), 1.0))
+    return bool(turned > ATTITUDE_LEAP + 2.0 * np.sqrt(rate) * 1e-3 * (m.uav_tick - good.uav_tick))
 
 
 @njit(cache=True)

@@ -81,7 +81,7 @@ LANDING = (
         magnet="on",
         held=True,
         # Until the arm carries, a UAV without link flies by itself.
-        link="guided",
+        link="caught",
         timeout_s=1.5,
         on_timeout="miss",
         guards=(

@@ -22,7 +22,7 @@ from armland.rotations import Array, conjugate, cross, matrix, multiply
 
 AUTONOMOUS, STATION, LEVEL, RAMP, BALANCE, OFF, RUN_UP, CRUISE = range(len(UAV))
 MODE_AUTONOMOUS, MODE_OFF = UavMode.AUTONOMOUS, UavMode.OFF
-MODES = (UavMode.GUIDED, UavMode.HELD, UavMode.LANDED)
+MODES = (UavMode.GUIDED, UavMode.HELD, UavMode.LANDED, UavMode.CAUGHT)
 """By index into `phases.LINK`."""
 HELD = LINK.index("held")
 

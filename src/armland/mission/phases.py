@@ -104,8 +104,9 @@ thrust ramp; level with the thrust that frees the hinge of force; stops; as leve
 
 MAGNET = ("off", "on", "test")
 
-LINK = ("guided", "held", "landed")
-"""A UAV without link hovers by itself; stays level with the thrust it has; lets its rotors run down."""
+LINK = ("guided", "held", "landed", "caught")
+"""A UAV without link hovers by itself; stays level with the thrust it has; lets its rotors run down; hovers by itself though the
+magnet has gripped it."""
 
 SHARE_RAMP = UAV.index("ramp")
 

@@ -117,6 +117,8 @@ class UavMode:
     """Follows the set-points; if the link is lost it lets the rotors run down: the cradle carries it."""
     OFF = 4
     """Rotors stopped."""
+    CAUGHT = 5
+    """As `GUIDED`; on the magnet already, so it stops its rotors if one of them fails, as in `HELD`."""
 
 
 class Limit:

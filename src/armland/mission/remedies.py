@@ -5,7 +5,10 @@ from armland.mission.supervisor import FAULTS
 REMEDIES: dict[str, tuple[str, str]] = {
     "non_finite": ("a device sends numbers that are none", "look at the device whose samples are flagged"),
     "arm_stale": ("the joints' samples stay away or leap", "check encoders and the arm's bus, then release the brakes"),
-    "uav_silent": ("the UAV's link is silent in one direction or both", "restore the link"),
+    "uav_silent": (
+        "the UAV's link is silent in one direction or both, or its attitude leaps",
+        "restore the link, look at the UAV's attitude sensor",
+    ),
     "camera_stale": ("the camera has not seen the marker for too long", "clean or light the marker, check the camera"),
     "wrench_stale": ("the force-torque sensor's samples stay away", "check the sensor's bus"),
     "wrench_drift": (
@@ -32,7 +35,6 @@ STANDING: dict[str, str] = {
     "refused": "nothing has begun: the arm holds, the magnet is off, the UAV does what it did before",
     "abort": "the arm has drawn back and holds, the magnet is off, the UAV flies by itself",
     "holding": "the arm holds the UAV by the magnet, the UAV stays level with the thrust it has",
-    "hanging": "the arm holds the UAV by the magnet, its rotors stopped",
     "balancing": "the arm balances the UAV upright on its hinge, or has set it down on the rails, its rotors stopped, the magnet on",
     "let_fly": "the arm has drawn back, the magnet is off, the UAV flies by itself",
     "secured": "the UAV stands on the cradle with its rotors stopped, the magnet on, the arm gives way",

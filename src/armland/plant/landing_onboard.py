@@ -34,7 +34,7 @@ WATCHED_N = 0.3
 WEAK_SAMPLES = 2
 """Samples in a row that make a weak rotor a lost one."""
 
-AUTONOMOUS, GUIDED, HELD = UavMode.AUTONOMOUS, UavMode.GUIDED, UavMode.HELD
+AUTONOMOUS, GUIDED, HELD, CAUGHT = UavMode.AUTONOMOUS, UavMode.GUIDED, UavMode.HELD, UavMode.CAUGHT
 LANDED, OFF = UavMode.LANDED, UavMode.OFF
 
 
@@ -57,7 +57,7 @@ def fly(tick: int, p: Record, s: Record, t: Record, noise: Array) -> None:
     silent = tick - s.heard > p.watchdog
     mode = int(s.arrived[5])
     q_d = s.arrived[:4].copy()
-    if s.deaf or mode == AUTONOMOUS or (mode == GUIDED and silent):
+    if s.deaf or mode == AUTONOMOUS or (silent and mode in (GUIDED, CAUGHT)):
         q_d = _hover(p, s, t, noise, p.climb if silent else 0.0)
     else:
         s.hovering = 0
@@ -84,7 +84,7 @@ def _watch(mode: int, p: Record, s: Record) -> bool:
     for k in range(4):
         weak = weak or (s.rotor_due[k] > WATCHED_N and s.rotor[k] < p.watch * s.rotor_due[k])
     s.weak = s.weak + 1 if weak else 0
-    s.cut = 1 if mode == HELD and (s.cut or s.weak >= WEAK_SAMPLES) else 0
+    s.cut = 1 if mode in (HELD, CAUGHT) and (s.cut or s.weak >= WEAK_SAMPLES) else 0
     return bool(s.cut)
 
 
