@@ -57,7 +57,7 @@ def test_joint_that_leaps_is_not_believed(step, bad):
 )
 def test_attitude_that_leaps_is_not_believed_of_a_uav_that_is_held(held, turn, rate, believed):
     good, m = np.zeros(1, landing_layout("measurement", 7)), measurement()
-    assert screened(m[0], good[0], held) == 0
+    assert screened(m[0], good[0], False) == 0
     # It stays there: a sample that was not believed does not become true by being repeated.
     for tick in (105, 110, 115):
         m = measurement(tick)

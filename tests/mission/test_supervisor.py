@@ -6,6 +6,7 @@ import pytest
 from armland.mission.finals import FINALS
 from armland.mission.landing_procedure import LANDING
 from armland.mission.landing_state import memory_layout, parameters_layout
+from armland.mission.phases import CARRIED_N
 from armland.mission.records import Limit, landing_layout
 from armland.mission.supervisor import (
     DEBOUNCE_TICKS,
@@ -250,7 +251,7 @@ def test_no_phase_allows_more_force_where_nothing_may_touch():
     for phases in (LANDING, TAKEOFF):
         for p in phases:
             if p.kind == "flight" and not p.final:
-                assert p.force_n <= 5.0, p.name
+                assert p.force_n <= CARRIED_N, p.name
 
 
 def test_link_that_is_silent_on_the_way_up_is_found_as_well(bench):

@@ -32,6 +32,9 @@ KNOCK: dict[str, Any] = {"kind": "push", "body": "tool", "size": 115.0, "directi
 JERK: dict[str, Any] = {"kind": "overload", "size": -125.0, "lasts_s": 0.02}
 """A UAV that stands is jerked upwards: on the cradle a blow downwards is the rails' to bear."""
 
+SHOVE: dict[str, Any] = {"kind": "push", "body": "uav", "size": 1.5, "direction": (0.0, 1.0, 0.0)}
+"""The UAV is pushed aside."""
+
 WAYS: dict[str, dict[str, Any]] = {
     "non_finite": {"kind": "non_finite", "device": "wrench"},
     "arm_stale": {"kind": "arm_stale"},
@@ -98,9 +101,13 @@ class Cell(NamedTuple):
     found: str | None = None
     onwards: str | None = None
     after_s: float = AFTER_S
+    also: dict[str, Any] | None = None
 
 
 CELLS: dict[tuple[Mission, str, str], Cell] = {
+    # On a magnet without pull the plate lies by its weight until something pushes it.
+    ("landing", "slip", "held"): Cell(also=SHOVE),
+    ("takeoff", "slip", "held"): Cell(also=SHOVE),
     # An attitude that leaps while it is held is not believed; a true tilt is a lost rotor long before.
     ("landing", "uav_tilt", "held"): Cell(end="holding", found="uav_silent"),
     ("takeoff", "uav_tilt", "held"): Cell(end="holding", found="uav_silent"),
@@ -110,9 +117,6 @@ CELLS: dict[tuple[Mission, str, str], Cell] = {
     ("takeoff", "rotor_lost", "grip"): Cell(end="balancing"),
     ("landing", "overload", "cradle"): Cell(way=JERK),
     ("takeoff", "overload", "grip"): Cell(way=JERK),
-    # What slides when the brakes stop an arm that was struck is let go in a second step.
-    ("landing", "near_limit", "held"): Cell(onwards="braked_free", found="slip"),
-    ("takeoff", "near_limit", "held"): Cell(onwards="braked_free", found="slip"),
     # Once it has seen something; a camera that is dead from the start is among the extras.
     ("landing", "camera_stale", "ground"): Cell(after_s=0.3),
     ("takeoff", "camera_stale", "ground"): Cell(after_s=0.3),
@@ -136,7 +140,7 @@ CELLS: dict[tuple[Mission, str, str], Cell] = {
     ("landing", "slip", "touch"): Cell(end="abort", found="none"),
     ("landing", "slip", "cradle"): Cell(end="done", found="none"),
     ("takeoff", "slip", "ground"): Cell(end="refused", found="none"),
-    ("takeoff", "slip", "grip"): Cell(end="let_fly"),
+    ("takeoff", "slip", "grip"): Cell(end="done", found="none"),
     ("takeoff", "slip", "touch"): Cell(end="done", found="none"),
     ("takeoff", "slip", "flight"): Cell(end="done", found="none"),
 }
@@ -163,7 +167,10 @@ def trial(mission: Mission, fault: str, kind: str) -> Trial:
     cell = CELLS.get((mission, fault, kind), Cell())
     wanted = FAULT_TABLE[fault][kind]
     end = cell.end or wanted
-    faults = (failure(cell.phase or PHASES[mission][kind], cell.after_s, **(cell.way or WAYS[fault])),)
+    phase = cell.phase or PHASES[mission][kind]
+    faults: tuple[Fault, ...] = (failure(phase, cell.after_s, **(cell.way or WAYS[fault])),)
+    if cell.also is not None:
+        faults = (*faults, failure(phase, cell.after_s, **cell.also))
     states = states_of(mission, cell.onwards or end)
     return Trial(f"{mission} {fault} {kind}", mission, faults, end, cell.found or fault, states, cell.onwards)
 
@@ -202,8 +209,15 @@ def extras() -> list[Trial]:
         _extra("deaf UAV", "landing", "holding", "wrench_drift", f("set_down", kind="unreachable", size=0.0)),
         _extra("deaf UAV that climbs", "landing", "holding", "wrench_drift", f("carry", kind="unreachable", size=0.5)),
         _extra("rotor at 70 %", "landing", "done", "none", f("carry", **lame)),
-        _extra("rotor at 70 %", "takeoff", "holding", "none", f("carry_up", **lame)),
-        _extra("dead magnet at the hand-over", "landing", "let_fly", "slip", f("hand_over", **WAYS["slip"])),
+        _extra("rotor at 70 %", "takeoff", "balancing", "rotor_lost", f("carry_up", **lame)),
+        _extra(
+            "dead magnet at the hand-over",
+            "landing",
+            "let_fly",
+            "slip",
+            f("hand_over", **WAYS["slip"]),
+            f("hand_over", **SHOVE),
+        ),
         # Several at once.
         _extra(
             "camera and link",
@@ -228,6 +242,7 @@ def extras() -> list[Trial]:
             "slip",
             f("carry", kind="camera_lost"),
             f("carry", 0.5, **WAYS["slip"]),
+            f("carry", 0.5, **SHOVE),
         ),
         _extra(
             "link, then magnet",
@@ -253,6 +268,7 @@ def extras() -> list[Trial]:
             "let_fly",
             "arm_stale",
             f("carry", **WAYS["slip"]),
+            f("carry", **SHOVE),
             f("carry", 2.0, kind="arm_stale"),
             onwards="braked_free",
         ),

@@ -55,6 +55,9 @@ COUNT = len(SIGNALS)
     S_ROTORS,
 ) = (SIGNAL[name] for name in SIGNALS)
 
+JOLT_MPS = 0.1
+"""Speed of the end effector against its reference that no healthy flight makes once the UAV is held."""
+
 COIL_S = 0.15
 """Time after which a magnet that was switched on must carry its current."""
 
@@ -139,6 +142,16 @@ def load_expected(phase: Record, elapsed: float, e: Record, p: Record, s: Record
     if phase.held and (phase.observe or e.r[2] > p.clear_z):
         return float(p.weight * (1.0 - e.thrust / max(s.hover, 1e-3)))
     return np.nan
+
+
+@njit(cache=True)
+def note_jolts(now: int, e: Record, r: Record, s: Record) -> None:
+    """Remember when the end effector was struck: a UAV that leans then need not have lost a rotor."""
+    missed = 0.0
+    for i in range(3):
+        missed += (r.v[i] - e.v[i]) ** 2
+    if missed > JOLT_MPS**2:
+        s.jolted = now
 
 
 @njit(cache=True)
@@ -246,6 +259,7 @@ def landing_tick(
     signals_of(row, t.mission.progress, elapsed, load[0].contact, wrench_s[0].blocks, t, p, s, signals)
     magnet_on = (c.magnet == MAGNET_ON and elapsed > COIL_S) or row.magnet == MAGNET_TEST
     expected = load_expected(row, elapsed, e, p, s)
+    note_jolts(now, e, t.reference, s)
     matters = rows[:, s.phase].copy()
     fault = find_fault(bad, magnet_on, expected, row.force, m, e, t.health, p, s, debounce, matters)
     new = rows[fault, s.phase] if fault else next_phase(s.phase, elapsed, signals, phases, guards, conditions, counts)

@@ -1,7 +1,7 @@
 """The landing as a table of phases; the names of thresholds are those of `bounds.thresholds`."""
 
 from armland.mission.finals import FINALS
-from armland.mission.phases import CARRIED_N, IMPACT_N, Condition, Guard, Phase
+from armland.mission.phases import IMPACT_N, Condition, Guard, Phase
 
 C, G = Condition, Guard
 
@@ -91,7 +91,6 @@ LANDING = (
     ),
     Phase(
         "hand_over",
-        force_n=CARRIED_N,
         kind="held",
         arm="hold",
         uav="ramp",
@@ -106,7 +105,6 @@ LANDING = (
     ),
     Phase(
         "carry",
-        force_n=CARRIED_N,
         kind="held",
         arm="move",
         uav="ramp",
@@ -160,7 +158,6 @@ LANDING = (
     ),
     Phase(
         "release",
-        force_n=CARRIED_N,
         kind="cradle",
         arm="yield",
         uav="off",

@@ -156,7 +156,7 @@ class Landing(Section):
     onboard_kd_nms: Positive3 = (0.18, 0.18, 0.20)
     onboard_lead_s: NonNegative = 0.05
     onboard_rotor_watch: NonNegative = Field(
-        0.75, le=0.95, description="share of its due thrust below which a rotor counts as lost on board; 0: no watch"
+        0.6, le=0.95, description="share of its due thrust below which a rotor counts as lost on board; 0: no watch"
     )
     carry_share: Positive = Field(
         0.5, description="share of the weight that the rotors carry while the arm moves the UAV"

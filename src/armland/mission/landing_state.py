@@ -111,6 +111,7 @@ def memory_layout(joints: int) -> np.dtype:
             ("retries", "i8"),
             ("fault", "i8"),
             ("held", "i8"),
+            ("jolted", "i8"),  # tick at which the end effector last missed its reference by a jolt
             ("caught", "i8"),  # tick at which the UAV was held first
             # Reference of the arm
             ("r0", "f8", (3,)),

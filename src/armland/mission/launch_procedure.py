@@ -2,7 +2,7 @@
 
 from armland.mission.finals import TAKEOFF_FINALS
 from armland.mission.landing_scenario import Landing
-from armland.mission.phases import CARRIED_N, Condition, Guard, Phase
+from armland.mission.phases import Condition, Guard, Phase
 from armland.mission.takeoff_procedure import TAKEOFF
 
 C, G = Condition, Guard
@@ -34,7 +34,6 @@ LAUNCH = (
     ),
     Phase(
         "launch",
-        force_n=CARRIED_N,
         kind="held",
         arm="launch",
         uav="run_up",
@@ -46,7 +45,6 @@ LAUNCH = (
     ),
     Phase(
         "release",
-        force_n=CARRIED_N,
         kind="touch",
         # It goes on as fast as before while the magnet's current dies.
         arm="launch",

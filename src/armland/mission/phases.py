@@ -38,7 +38,7 @@ SIGNALS = {
 SIGNAL = {name: i for i, name in enumerate(SIGNALS)}
 
 
-CARRIED_N, IMPACT_N = 20.0, 60.0  # while it is carried, where faces meet; the demonstrator's flights make 3 N and 30 N
+CARRIED_N, IMPACT_N = 20.0, 60.0  # while nothing meets, where faces meet; the demonstrator's flights make 3 N and 30 N
 
 
 class Condition(NamedTuple):
@@ -80,8 +80,8 @@ class Phase(NamedTuple):
     """Whether the end effector is known to touch nothing: the force-torque sensor's bias is learnt."""
     observe: bool = False
     """Whether the disturbance observer learns."""
-    force_n: float = 5.0
-    """Hinge force, N, that no healthy flight of the phase makes; by default of one in which nothing touches."""
+    force_n: float = CARRIED_N
+    """Hinge force, N, that no healthy flight of the phase makes."""
     share: float = 1.0
     """Share of the weight that the rotors carry at the end of the phase, where the UAV ramps its thrust."""
     duration_s: float = 0.0

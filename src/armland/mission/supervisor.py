@@ -129,6 +129,9 @@ SEEN_S = 0.15
 LOAD_N, LOAD_LEFT = 2.0, 0.3
 """A load of this much, of which less than that share is felt, is gone."""
 
+JOLTED_S = 0.4
+"""Time for which a UAV leans that was struck by way of the arm, and rights itself."""
+
 CAUGHT_S = 0.2
 """Time for which a UAV that was caught may lean as in flight."""
 
@@ -206,7 +209,8 @@ def find_fault(
     # Touching the rails tilts it too, and when it is caught it still leans from its flight.
     early = m.tick - s.caught < CAUGHT_S / p.tick_s
     most = p.capture_max * (2.0 if early or e.r[2] < p.down + p.near else 1.0)
-    signs[ROTOR_LOST] = s.held == 1 and capture_angle(e.quat, e.omega, p.fall_rate) > most
+    struck = m.tick - s.jolted < JOLTED_S / p.tick_s
+    signs[ROTOR_LOST] = s.held == 1 and not struck and capture_angle(e.quat, e.omega, p.fall_rate) > most
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
     signs[NEAR_LIMIT] = h.joint_margin < p.joint_margin or s.sigma < p.sigma_min or h.speed_ratio > p.speed_share
     for f in range(1, len(FAULTS)):

@@ -1,7 +1,7 @@
 """The take-off as a table of phases: the landing backwards; the names of thresholds are those of `bounds.thresholds`."""
 
 from armland.mission.finals import TAKEOFF_FINALS
-from armland.mission.phases import CARRIED_N, IMPACT_N, Condition, Guard, Phase
+from armland.mission.phases import IMPACT_N, Condition, Guard, Phase
 
 C, G = Condition, Guard
 
@@ -54,7 +54,7 @@ TAKEOFF = (
     ),
     Phase(
         "spin_up",
-        force_n=CARRIED_N,
+        force_n=IMPACT_N,
         kind="grip",
         link="landed",
         arm="yield",
@@ -67,7 +67,6 @@ TAKEOFF = (
     ),
     Phase(
         "lift",
-        force_n=CARRIED_N,
         kind="held",
         arm="move",
         uav="ramp",
@@ -82,7 +81,6 @@ TAKEOFF = (
     ),
     Phase(
         "carry_up",
-        force_n=CARRIED_N,
         kind="held",
         arm="move",
         uav="ramp",
@@ -98,14 +96,13 @@ TAKEOFF = (
     ),
     Phase(
         "hand_back",
-        force_n=CARRIED_N,
         kind="held",
         arm="hold",
         uav="balance",
         magnet="on",
         held=True,
         # It flies by itself should the link be lost: it must know so before the magnet opens.
-        link="guided",
+        link="caught",
         observe=True,
         timeout_s=8.0,
         on_timeout="holding",
@@ -123,7 +120,6 @@ TAKEOFF = (
     ),
     Phase(
         "release",
-        force_n=CARRIED_N,
         kind="touch",
         arm="hold",
         uav="level",
