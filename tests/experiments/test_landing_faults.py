@@ -169,10 +169,16 @@ def test_blind_to_the_fault_the_same_failure_comes_out_differently(fault):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("fault", "kind"), [("arm_stale", "held"), ("near_limit", "touch")])
-def test_blind_supervisor_loses_the_uav(fault, kind):
-    t = trial("landing", fault, kind)
-    assert any("fell" in line for line in unsafe(fly_trial(t, (fault,))))
+def test_blind_to_a_dead_encoder_the_arm_runs_into_the_floor():
+    t = trial("landing", "arm_stale", "held")
+    assert "arm_touched_floor" in fly_trial(t, ("arm_stale",)).judgement.limits_violated
+    assert "arm_touched_floor" not in flown(t).judgement.limits_violated
+
+
+@pytest.mark.slow
+def test_blind_to_an_arm_that_is_flung_the_uav_is_lost():
+    t = trial("landing", "near_limit", "touch")
+    assert any("fell" in line for line in unsafe(fly_trial(t, ("near_limit", "overload"))))
 
 
 @pytest.mark.slow
@@ -185,12 +191,10 @@ def test_blind_to_a_silent_link_the_uav_is_let_go_with_its_rotors_running():
 
 
 @pytest.mark.slow
-def test_blind_to_slip_the_uav_slides_onto_the_arm():
+def test_blind_to_slip_the_uav_falls_off():
     t = trial("landing", "slip", "held")
-    blind, seen = fly_trial(t, ("slip",)), flown(t)
-    assert "arm_touched_uav" in blind.judgement.limits_violated
-    assert blind.sink_mps > 3.0 * seen.sink_mps
-    assert "arm_touched_uav" not in seen.judgement.limits_violated
+    assert any("fell" in line for line in unsafe(fly_trial(t, ("slip", "rotor_lost"))))
+    assert not any("fell" in line for line in unsafe(flown(t)))
 
 
 @pytest.mark.parametrize(

@@ -145,11 +145,13 @@ def load_expected(phase: Record, elapsed: float, e: Record, p: Record, s: Record
 
 
 @njit(cache=True)
-def note_jolts(now: int, e: Record, r: Record, s: Record) -> None:
-    """Remember when the end effector was struck: a UAV that leans then need not have lost a rotor."""
-    missed = 0.0
+def note_jolts(now: int, e: Record, r: Record, p: Record, s: Record) -> None:
+    """Remember what makes a UAV lean that has lost no rotor: that the end effector was struck, and how hard it accelerates."""
+    missed, asked = 0.0, 0.0
     for i in range(3):
         missed += (r.v[i] - e.v[i]) ** 2
+        asked += r.a[i] ** 2
+    s.tip = p.tip * np.sqrt(asked)
     if missed > JOLT_MPS**2:
         s.jolted = now
 
@@ -259,7 +261,7 @@ def landing_tick(
     signals_of(row, t.mission.progress, elapsed, load[0].contact, wrench_s[0].blocks, t, p, s, signals)
     magnet_on = (c.magnet == MAGNET_ON and elapsed > COIL_S) or row.magnet == MAGNET_TEST
     expected = load_expected(row, elapsed, e, p, s)
-    note_jolts(now, e, t.reference, s)
+    note_jolts(now, e, t.reference, p, s)
     matters = rows[:, s.phase].copy()
     fault = find_fault(bad, magnet_on, expected, row.force, m, e, t.health, p, s, debounce, matters)
     new = rows[fault, s.phase] if fault else next_phase(s.phase, elapsed, signals, phases, guards, conditions, counts)

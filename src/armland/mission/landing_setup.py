@@ -159,6 +159,8 @@ def _balance(p: NDArray[np.void], scenario: LandingScenario, arm: ArmModel, uav:
     # The last joint but one tilts the tool: where it sits is the wrist. At this share the pivot may be fastest: 0.9 to 1.1 m/s
     # across the corners of its reach, against 0.6 m/s of the wrist alone and 0.3 m/s of the arm without it.
     p["swing"], p["wrist"] = 0.75, np.linalg.norm(arm.position - arm.anchor[-2])
+    # m l a against the on-board attitude loop's stiffness, twice as much where it overshoots.
+    p["tip"] = 2.0 * uav.mass * np.linalg.norm(uav.lever) / min(scenario.landing.onboard_kp_nm[:2])
     p["attitude_age"], p["lost"] = round(0.05 * rate), v.balance_reach_m * rate_of_fall**2 / GRAVITY
     p["down"], p["settle"], p["near"] = place.put_down_m[2], 0.025, 0.010
 

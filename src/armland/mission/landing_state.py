@@ -77,6 +77,7 @@ def parameters_layout(joints: int, phases: int) -> np.dtype:
             ("lost", "f8"),  # rad, capture point beyond which it cannot be balanced
             ("settle", "f8"),  # m, height above it below which a UAV is set down and not balanced
             ("near", "f8"),  # m, height above it at which the rails may touch
+            ("tip", "f8"),  # rad per m/s²: how far the arm's acceleration tilts the UAV on its hinge
             ("capture_max", "f8"),  # rad, capture point at which a held UAV counts as falling
             # Camera
             ("camera", "f8", (3,)),  # m, end effector frame
@@ -111,6 +112,7 @@ def memory_layout(joints: int) -> np.dtype:
             ("retries", "i8"),
             ("fault", "i8"),
             ("held", "i8"),
+            ("tip", "f8"),  # rad, that the arm's acceleration explains
             ("jolted", "i8"),  # tick at which the end effector last missed its reference by a jolt
             ("caught", "i8"),  # tick at which the UAV was held first
             # Reference of the arm

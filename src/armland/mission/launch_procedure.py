@@ -61,8 +61,8 @@ LAUNCH = (
     ),
     Phase(
         "clear",
-        # The UAV has left the camera's sight: it flies by itself.
-        kind="ground",
+        # The UAV has left: it flies by itself.
+        sight=False,
         arm="hold",
         uav="autonomous",
         on_timeout="done",

@@ -78,6 +78,8 @@ class Phase(NamedTuple):
     """Whether the UAV hangs on the magnet: the controller's model is then arm and UAV together."""
     free: bool = False
     """Whether the end effector is known to touch nothing: the force-torque sensor's bias is learnt."""
+    sight: bool = True
+    """Whether the camera should see the UAV."""
     observe: bool = False
     """Whether the disturbance observer learns."""
     force_n: float = CARRIED_N

@@ -132,8 +132,8 @@ LOAD_N, LOAD_LEFT = 2.0, 0.3
 JOLTED_S = 0.4
 """Time for which a UAV leans that was struck by way of the arm, and rights itself."""
 
-CAUGHT_S = 0.2
-"""Time for which a UAV that was caught may lean as in flight."""
+CAUGHT_S = 0.15
+"""Time constant with which a UAV rights itself that was caught while it leant, as in flight it may."""
 
 DAMPER = 20.0
 """N·m·s/rad that replaces a torque which is cut."""
@@ -151,7 +151,7 @@ def fault_rows(phases: tuple[Phase, ...]) -> np.ndarray:
         for k, p in enumerate(phases):
             row = ESCALATION.get(p.name, {}) if p.kind == "end" else FAULT_TABLE.get(fault, {})
             target = row.get(fault if p.kind == "end" else p.kind, "-")
-            if target != "-":
+            if target != "-" and (p.sight or fault != "camera_stale"):
                 rows[f, k] = names.index(target)
     return rows
 
@@ -207,8 +207,9 @@ def find_fault(
         signs[SLIP] = expected > LOAD_N and force < LOAD_LEFT * expected
     signs[OVERLOAD] = force > min(force_max, p.hinge_max)
     # Touching the rails tilts it too, and when it is caught it still leans from its flight.
-    early = m.tick - s.caught < CAUGHT_S / p.tick_s
-    most = p.capture_max * (2.0 if early or e.r[2] < p.down + p.near else 1.0)
+    since = (m.tick - s.caught) * p.tick_s
+    most = p.capture_max * (2.0 if e.r[2] < p.down + p.near else 1.0)
+    most += s.tip + max(p.tilt_max - most, 0.0) * np.exp(-since / CAUGHT_S)
     struck = m.tick - s.jolted < JOLTED_S / p.tick_s
     signs[ROTOR_LOST] = s.held == 1 and not struck and capture_angle(e.quat, e.omega, p.fall_rate) > most
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
