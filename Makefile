@@ -22,8 +22,8 @@ help: ## list the targets (default)
 	@echo 'armland: make TARGET [PYTHON=python3.12] [ARGS="..."]'
 	@awk -F ': .*## ' '/^[a-z]+:.*## / { printf "  %-7s %s\n", $$1, $$2 }' Makefile
 
-run: $(STAMP) ## run the paper's experiments; ARGS is passed to `armland paper`
-	@.venv/bin/armland paper $(ARGS)
+run: $(STAMP) ## land a UAV; ARGS is passed to `armland land`
+	@.venv/bin/armland land $(ARGS)
 
 test: $(STAMP) ## run every check: ruff, mypy, pytest; ARGS is passed to pytest
 	.venv/bin/ruff check .
