@@ -44,7 +44,7 @@ def test_models_range_is_nearer_than_where_cells_become_too_small() -> None:
 def test_fit_gives_the_coefficients_in_use() -> None:
     pytest.importorskip("cv2")
     try:
-        fitted = fit_detector(per_distance=8, losses=160, seed=5)
+        fitted = fit_detector(per_distance=8, losses=96, seed=5)
     except PictureError as e:
         pytest.skip(str(e))
     for new, old in zip(fitted[:4], DETECTOR[:4], strict=True):
