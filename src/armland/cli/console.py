@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 from armland.errors import ConfigurationError
 
-COMPILING = "Compiling the control laws: this happens once and takes less than a minute."
+COMPILING = "Compiling the control laws: this happens once and takes about a minute."
 
 
 def announce_compilation(
