@@ -291,3 +291,10 @@ def test_joint_beyond_its_speed_is_near_its_limit(bench):
 def test_one_image_that_is_far_off_is_no_slip(bench):
     bench.s["grip_far"] = 1
     assert bench.find(1000) == "none"
+
+
+@pytest.mark.parametrize(("images", "found"), [(0, "rotor_lost"), (1, "none")])
+def test_uav_whose_plate_slides_off_has_lost_no_rotor(bench, images, found):
+    bench.e["quat"][0] = [np.cos(0.05), np.sin(0.05), 0.0, 0.0]
+    bench.s["grip_far"] = images
+    assert bench.find(10) == found

@@ -211,7 +211,9 @@ def find_fault(
     most = p.capture_max * (2.0 if e.r[2] < p.down + p.near else 1.0)
     most += s.tip + max(p.tilt_max - most, 0.0) * np.exp(-since / CAUGHT_S)
     struck = m.tick - s.jolted < JOLTED_S / p.tick_s
-    signs[ROTOR_LOST] = s.held == 1 and not struck and capture_angle(e.quat, e.omega, p.fall_rate) > most
+    # A plate that slides off tilts the UAV as well: with its rotors stopped it would fall.
+    on = s.grip_far == 0 and not signs[SLIP]
+    signs[ROTOR_LOST] = s.held == 1 and on and not struck and capture_angle(e.quat, e.omega, p.fall_rate) > most
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
     signs[NEAR_LIMIT] = h.joint_margin < p.joint_margin or s.sigma < p.sigma_min or h.speed_ratio > p.speed_share
     for f in range(1, len(FAULTS)):
