@@ -8,13 +8,13 @@ UV_VERSION := 0.13.9
 STAMP := .venv/.installed
 PIP := .venv/bin/python -m pip --disable-pip-version-check --quiet
 # By file: tests of one file share the laws they compile, and two workers would each compile them on a cold cache.
-PYTEST := .venv/bin/python -m pytest -n $(JOBS) --dist loadfile
+PYTEST := .venv/bin/python -m pytest -n $(JOBS) --dist loadfile --durations 25 --durations-min 0.5
 
 # An environment that was moved, copied or left half installed still runs, but not this working tree: make it anew.
 INTACT := $(shell [ -x .venv/bin/python ] && [ ! -e .venv/.incomplete ] \
 	&& grep -qsF "$$(pwd -P)/.venv/" .venv/bin/pip && echo yes)
 
-.PHONY: help run test check quick bench lock clean FORCE
+.PHONY: help run test check slow bench mutants lock clean FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -25,21 +25,24 @@ help: ## list the targets (default)
 run: $(STAMP) ## land a UAV; ARGS is passed to `armland land`
 	@.venv/bin/armland land $(ARGS)
 
-test: $(STAMP) ## run every check: ruff, mypy, pytest; ARGS is passed to pytest
+test: $(STAMP) ## run the checks: ruff, mypy, pytest without the slow tests; ARGS is passed to pytest
 	.venv/bin/ruff check .
 	.venv/bin/ruff format --check .
 	.venv/bin/mypy
-	$(PYTEST) $(ARGS)
+	$(PYTEST) -m 'not slow' $(ARGS)
 
 check: test ## the same as test
 
-quick: $(STAMP) ## run the tests that take seconds; ARGS is passed to pytest
-	$(PYTEST) -m 'not slow' $(ARGS)
+slow: $(STAMP) ## run the slow tests; ARGS is passed to pytest
+	$(PYTEST) -m slow $(ARGS)
 
 bench: $(STAMP) ## run the benchmarks
 	@for file in benchmarks/*.py; do \
 		if [ -e "$$file" ]; then echo "== $$file"; .venv/bin/python "$$file" $(ARGS) || exit 1; fi; \
 	done
+
+mutants: $(STAMP) ## change what computes, one thing at a time, and list what no test notices; takes hours, ARGS="--count 100" minutes
+	.venv/bin/python tools/mutants.py $(ARGS)
 
 lock: ## pin the dependencies anew in requirements.lock; ARGS=--upgrade takes the newest
 	@.venv/tools/bin/python -m pip --version >/dev/null 2>&1 || "$(PYTHON)" -m venv --clear .venv/tools

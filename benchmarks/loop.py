@@ -9,10 +9,10 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-
 from armland.config import load_scenario
 from armland.experiments.assembly import Assembly, assemble, survey
 from armland.runtime.loop import run_loop
+
 from armland.runtime.recorder import Recorder
 
 ROUNDS = 8

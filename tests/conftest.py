@@ -51,16 +51,33 @@ class ForwardDynamics:
 
 @pytest.fixture(scope="session")
 def paper():
-    from armland.config import load_scenario
+    from armland.scenario import load_scenario
 
     return load_scenario("paper")
 
 
 @pytest.fixture(scope="session")
-def workplace(paper):
-    from armland.experiments.assembly import survey
+def plans(paper):
+    """Plans of the paper's experiments, each made once; with overrides they are made anew."""
+    from armland.mission.plan import plan
+    from armland.scenario import load_scenario
 
-    return survey(paper)
+    made = {}
+
+    def of(experiment, overrides=None):
+        if overrides:
+            return plan(load_scenario("paper", overrides), "track", experiment=experiment)
+        if experiment not in made:
+            made[experiment] = plan(paper, "track", experiment=experiment)
+        return made[experiment]
+
+    return of
+
+
+@pytest.fixture(scope="session")
+def workplace(plans):
+    """Home, path and legs of the paper's experiments."""
+    return plans("E1")
 
 
 @pytest.fixture(scope="session")
@@ -72,23 +89,23 @@ def dynamics(paper):
 
 
 @pytest.fixture
-def controller(paper, workplace):
+def controller(plans, workplace):
     """The controller of an experiment with its messages; `sample` fills a measurement and updates."""
-    from armland.config import load_scenario
-    from armland.experiments.assembly import assemble
+    from armland.mission.controller import Controller
 
     def build(experiment="E1", overrides=None):
-        scenario = load_scenario("paper", overrides) if overrides else paper
-        assembly = assemble(scenario, experiment, workplace)
-        law, tick = assembly.controller, assembly.tick
+        plan = plans(experiment, overrides)
+        law = Controller(plan)
+        tick = law.tick
 
         def sample(k=0, q=workplace.home, qd=0.0, quat=(1.0, 0.0, 0.0, 0.0), rate=0.0, wrench=0.0, uav_tick=None):
             m = tick.measurement
             m["tick"], m["uav_tick"] = k, k if uav_tick is None else uav_tick
+            m["arm_tick"] = m["wrench_tick"] = m["uav_heard"] = k
             m["q"], m["qd"], m["uav_quat"], m["uav_rate"], m["wrench"] = q, qd, quat, rate, wrench
             law.update(tick)
             return tick
 
-        return SimpleNamespace(law=law, tick=tick, sample=sample, scenario=scenario)
+        return SimpleNamespace(law=law, arm=plan.arm, told=law.board["told"], tick=tick, sample=sample, plan=plan)
 
     return build

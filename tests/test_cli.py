@@ -1,21 +1,30 @@
 """The command line: exit codes, one readable message, nothing half-written."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from armland.config import SCENARIOS
+from armland.scenario import SCENARIOS
 
 PAPER = (SCENARIOS / "paper.toml").read_text(encoding="utf-8")
 CALIBRATION = (SCENARIOS / "calibration.toml").read_text(encoding="utf-8")
 
 
-def armland(*args: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    call = [sys.executable, "-c", "from armland.cli import main; main()", *args]
-    return subprocess.run(call, capture_output=True, text=True, cwd=cwd, timeout=300)
+def armland(*args: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    call = [sys.executable, "-m", "armland", *args]
+    return subprocess.run(call, capture_output=True, text=True, cwd=cwd, timeout=300, env=os.environ | environment)
+
+
+def shell(command: str, cwd: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a line of a shell in which `armland` is the command."""
+    line = f'armland() {{ "{sys.executable}" -m armland "$@"; }}; set -o pipefail; {command}'
+    return subprocess.run(
+        ["bash", "-c", line], capture_output=True, text=True, cwd=cwd, timeout=300, env=os.environ | environment
+    )
 
 
 def test_paper_json_is_alone_on_standard_output(tmp_path: Path) -> None:
@@ -59,7 +68,7 @@ BAD = {
         "\n[control]\nk1 = [1.0, 1.0, 1.0, 30.0, -30.0, 30.0]\n",
         {},
         [],
-        ["control.k1.4", "greater than 0"],
+        ["control.k1.4", "lies outside"],
     ),
     "inertia not positive definite": (
         "",
@@ -115,6 +124,7 @@ def test_bad_scenario_is_one_message_exit_code_2_and_nothing_written(name: str, 
     assert "Traceback" not in done.stderr
     assert sum(line.startswith("armland: ") for line in done.stderr.splitlines()) == 1
     assert not (tmp_path / "out").exists()
+    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
 
 
 @pytest.mark.parametrize(
@@ -124,7 +134,9 @@ def test_bad_scenario_is_one_message_exit_code_2_and_nothing_written(name: str, 
         (("--arm", "short.urdf", "--ee", "l1"), ["1 joints", "at least 6"]),
         (("--arm", "short.urdf", "--ee", "tool0"), ["no frame 'tool0'", "l1"]),
         (("--arm", "torn.urdf", "--ee", "l1"), ["not well-formed XML"]),
-        (("--seed", "-1"), ["run.seed"]),
+        (("--seed", "-1"), ["--seed"]),
+        (("--law", "exact"), ["--compare", "armland run E3 --law exact"]),
+        (("--compare", "--law", "nowhere.py:law"), ["nowhere.py"]),
     ],
 )
 def test_bad_option_is_one_message_and_exit_code_2(args: tuple[str, ...], words: list[str], tmp_path: Path) -> None:
@@ -144,6 +156,48 @@ def test_out_that_cannot_be_a_folder(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert "--out" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+ASCII = {"PYTHONIOENCODING": "ascii", "LANG": "C"}
+
+
+def test_ascii_terminal_gets_words(tmp_path: Path) -> None:
+    done = armland("gains", cwd=tmp_path, **ASCII)
+    assert done.returncode == 0, done.stderr
+    assert "Margins" in done.stdout
+    assert done.stdout.isascii()
+    assert "phase [ deg]" in done.stdout
+    help_text = armland("land", "--help", cwd=tmp_path, **ASCII)
+    assert (help_text.returncode, help_text.stderr) == (0, "")
+    assert json.loads(armland("schema", cwd=tmp_path, **ASCII).stdout)
+
+
+def test_closed_pipe_is_no_error(tmp_path: Path) -> None:
+    done = shell("armland schema | head -1", tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "{\n", "")
+    done = shell("armland --help >&-", tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
+def test_full_disk_is_said(tmp_path: Path) -> None:
+    done = shell("armland schema > /dev/full", tmp_path)
+    assert done.returncode == 3
+    assert done.stderr == "armland: standard output cannot be written: No space left on device\n"
+
+
+def test_nothing_is_left_in_the_working_directory(tmp_path: Path) -> None:
+    for args in (("--version",), ("gains",), ("land", "nowhere.toml")):
+        armland(*args, cwd=tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_importing_armland_imports_nothing_heavy() -> None:
+    code = (
+        "import armland, sys; print([m for m in ('numba', 'mujoco', 'numpy', 'pydantic', 'typer') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
 
 
 def test_schema_is_json_and_help_has_examples() -> None:
@@ -221,7 +275,7 @@ def test_takeoff_weight_by_theory_alone(tmp_path: Path) -> None:
 
 
 def test_takeoff_weight_refuses_bad_input(tmp_path: Path) -> None:
-    (tmp_path / "far.toml").write_text("[place]\nlaunch_m = [1.5, 0.0, 0.9]\n")
+    (tmp_path / "far.toml").write_text('base = "landing"\n[place]\nlaunch_m = [1.5, 0.0, 0.9]\n')
     done = armland("takeoff-weight", "far.toml", "--no-flights", cwd=tmp_path)
     assert done.returncode == 2, done.stderr
     assert "out of reach" in done.stderr

@@ -1,25 +1,31 @@
-"""The messages that flow through the loop: NumPy structured dtypes, fixed size, one table for each kind of run.
+"""The messages that flow through the loop: one table, NumPy structured dtypes of fixed size.
 
 Every message is held in a structured array of shape (1,): compiled code takes such an array for 0.1 µs, where a
 structured scalar costs 1 µs. The fields of a message lie so that its bytes are also its CDR payload (8-byte fields only),
-which is how the run log stores it. `n` is the number of the arm's joints. The table here is that of the paper's loop; other
-kinds of runs have their own, made of the same parts.
+which is how the run log stores it. `n` is the number of the arm's joints. Frames: `W` inertial, z up; `D` deck, in which the arm's
+base, the cradle and the camera's mount are at rest, on land the same as W; `B` UAV body; `E` end effector.
+
+| device | its clock |
+|---|---|
+| arm, force-torque sensor, UAV link | the tick of the newest sample stands beside it: a watchdog compares it with the present |
+| camera | `camera_capture` is the tick of the exposure; `camera_fresh` is 1 in the tick of arrival |
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from armland.compiled import name_records_by_layout
+from armland.compiled import set_up
 
-name_records_by_layout()
+set_up()
 
 Record = Any
 """A structured record inside compiled code, its fields read and written as attributes."""
+
+Records = NDArray[np.void]
+"""Structured records, shape (1,) where nothing else is said."""
 
 
 class Field(NamedTuple):
@@ -33,103 +39,80 @@ class Field(NamedTuple):
     type: str = "f8"
 
 
-@dataclass(frozen=True, eq=False)
-class MessageTable:
-    """The messages of one kind of run, and the layouts that follow from them.
-
-    Each message begins with its `tick`; `measurement` has the joint positions `q`.
-    """
-
-    kind: str
-    """What a run log calls it."""
-    messages: Mapping[str, tuple[Field, ...]]
-    """The fields of each message."""
-    prefix: str = ""
-    """What the ROS types of its messages begin with: a type's name has one definition."""
-
-    def layout(self, message: str, joints: int) -> np.dtype:
-        """The dtype of one message for an arm with `joints` joints.
-
-        Raises:
-            KeyError: unknown message; the known ones are the keys of `messages`.
-        """
-        return _layout(self, message, joints)
-
-    def tick_layout(self, joints: int) -> np.dtype:
-        """The dtype of all messages of one tick, nested by name."""
-        return _tick_layout(self, joints)
-
-
-# Kept, so that equal layouts are one object, which compiled code recognises fastest.
-@lru_cache
-def _layout(table: MessageTable, message: str, joints: int) -> np.dtype:
-    spec = []
-    for f in table.messages[message]:
-        shape = tuple(joints if s == "n" else int(s) for s in f.shape)
-        spec.append((f.name, f.type, shape) if shape else (f.name, f.type))
-    return np.dtype(spec)
-
-
-@lru_cache
-def _tick_layout(table: MessageTable, joints: int) -> np.dtype:
-    return np.dtype([(name, _layout(table, name, joints)) for name in table.messages])
-
-
-class AnyTick:
-    """All messages of the tick in progress: views, shape (1,) each, of one buffer that the recorder copies whole."""
-
-    table: ClassVar[MessageTable]
-    measurement: NDArray[np.void]
-
-    def __init__(self, joints: int) -> None:
-        self.buffer: NDArray[np.void] = np.zeros(1, self.table.tick_layout(joints))
-        for name in self.table.messages:
-            setattr(self, name, self.buffer[name])
-
-
-TICK = Field("tick", (), "ms", "-", "time of the message in ticks of the base rate", "i8")
+TICK = Field("tick", (), "ticks", "-", "time of the message in ticks of the base rate", "i8")
 
 MESSAGES: dict[str, tuple[Field, ...]] = {
     "measurement": (
         TICK,
-        Field("uav_tick", (), "ms", "-", "tick at which the UAV took the sample that arrived last", "i8"),
+        Field("arm_tick", (), "ticks", "-", "tick at which the joints were sampled", "i8"),
+        Field("wrench_tick", (), "ticks", "-", "tick at which the force-torque sensor was sampled", "i8"),
+        Field("uav_tick", (), "ticks", "-", "tick at which the UAV took the sample that arrived last", "i8"),
+        Field("uav_heard", (), "ticks", "-", "tick at which the newest command had reached it by then", "i8"),
+        Field("camera_fresh", (), "1", "-", "1 where a camera sample arrived in this tick", "i8"),
+        Field("camera_capture", (), "ticks", "-", "tick of that sample's exposure", "i8"),
+        Field("magnet_fault", (), "1", "-", "1 where the coil's current did not rise as it should", "i8"),
         Field("q", ("n",), "rad", "joint", "joint positions"),
         Field("qd", ("n",), "rad/s", "joint", "joint velocities"),
         Field("wrench", (6,), "N, N·m", "sensor", "force, torque of the flange on the tool at the sensor's origin"),
-        Field("uav_quat", (4,), "1", "world<-body", "UAV attitude, scalar first"),
-        Field("uav_rate", (3,), "rad/s", "body", "UAV angular velocity"),
+        Field("uav_quat", (4,), "1", "UAV's W<-B", "attitude as the UAV knows it, scalar first"),
+        Field("uav_rate", (3,), "rad/s", "B", "UAV angular velocity"),
+        Field("camera_position", (3,), "m", "camera", "marker's centre"),
+        Field("camera_quat", (4,), "1", "camera<-marker", "marker's attitude, scalar first"),
+        Field("camera_sigma", (6,), "m, rad", "camera", "claimed standard deviations"),
+        Field("magnet_force", (), "N", "-", "force in contact that the coil's current promises"),
     ),
     "estimate": (
         TICK,
-        Field("r", (3,), "m", "world", "pivot (hinge) position"),
-        Field("v", (3,), "m/s", "world", "pivot velocity"),
-        Field("quat", (4,), "1", "world<-body", "UAV attitude, scalar first"),
-        Field("omega", (3,), "rad/s", "body", "UAV angular velocity"),
-        Field("hinge_force", (3,), "N", "world", "force of the end effector on the UAV, from the force-torque sensor"),
-        Field("disturbance", (3,), "N", "world", "force that the observer holds responsible for what the model misses"),
-        Field("tau_att", (3,), "N·m", "body", "torque of the onboard attitude controller, as the ground predicts it"),
+        Field("r", (3,), "m", "D", "end effector point: the pivot of a plate that is held"),
+        Field("v", (3,), "m/s", "D", "its velocity"),
+        Field("plate", (3,), "m", "D", "pivot of the hinge on the UAV, from camera and link"),
+        Field("plate_v", (3,), "m/s", "D", "its velocity"),
+        Field("plate_a", (3,), "m/s²", "D", "acceleration of the UAV's centre of mass"),
+        Field("plate_valid", (), "1", "-", "1 where the pose filter vouches for the three", "i8"),
+        Field("plate_age", (), "s", "-", "age of the newest camera sample in use"),
+        Field("quat", (4,), "1", "D<-B", "UAV attitude, scalar first"),
+        Field("omega", (3,), "rad/s", "B", "UAV angular velocity"),
+        Field("hinge_force", (3,), "N", "D", "force of the end effector on plate and UAV, bias and tool removed"),
+        Field("disturbance", (3,), "N", "D", "force that the observer holds responsible for what the model misses"),
+        Field("thrust", (), "N", "B", "thrust that acts as far as the ground knows"),
+        Field("tau_att", (3,), "N·m", "B", "torque of the onboard attitude controller, as the ground predicts it"),
+        Field("arm_share", (), "1", "-", "share of the weight on the arm"),
+        Field("ground_share", (), "1", "-", "share of the weight on cradle or ground"),
+    ),
+    "mission": (
+        TICK,
+        Field("phase", (), "1", "-", "index into the mission's phases", "i8"),
+        Field("retries", (), "1", "-", "missed captures so far", "i8"),
+        Field("fault", (), "1", "-", "index into the faults; 0 is none", "i8"),
+        Field("elapsed", (), "s", "-", "time in the phase"),
+        Field("progress", (), "1", "-", "how far the phase's move is, 0 to 1"),
     ),
     "reference": (
         TICK,
-        Field("r", (3,), "m", "world", "desired pivot position r_d"),
-        Field("v", (3,), "m/s", "world", "desired pivot velocity"),
-        Field("a", (3,), "m/s²", "world", "desired pivot acceleration"),
-        Field("quat", (4,), "1", "world<-body", "desired UAV attitude q_d"),
+        Field("r", (3,), "m", "D", "desired position of the end effector point, r_d while the UAV is held"),
+        Field("v", (3,), "m/s", "D", "its velocity"),
+        Field("a", (3,), "m/s²", "D", "its acceleration"),
+        Field("quat", (4,), "1", "D<-B", "desired UAV attitude q_d"),
     ),
     "command": (
         TICK,
+        Field("uav_mode", (), "1", "-", "see `UavMode`", "i8"),
+        Field("magnet", (), "1", "-", "0 off, 1 on, 2 self-test", "i8"),
+        Field("brake", (), "1", "-", "1 where the arm's brakes shall be on", "i8"),
         Field("tau", ("n",), "N·m", "joint", "joint torques"),
-        Field("delta_tau", (3,), "N·m", "body", "torque Δτ_att asked of the UAV beyond its attitude controller"),
-        Field("thrust", (), "N", "body", "total thrust f_T asked of the UAV"),
-        Field("force", (3,), "N", "world", "force F_EE that the law wants the end effector to put on the UAV"),
-        Field("torque", (3,), "N·m", "world", "orientation torque of the end effector"),
+        Field("uav_quat", (4,), "1", "UAV's W<-B", "attitude set-point, scalar first"),
+        Field("delta_tau", (3,), "N·m", "B", "torque Δτ_att asked of the UAV beyond its attitude controller"),
+        Field("thrust", (), "N", "B", "total thrust f_T asked of the UAV"),
+        Field("force", (3,), "N", "D", "force F_EE that the law wants the end effector to put on the UAV"),
+        Field("torque", (3,), "N·m", "D", "orientation torque of the end effector"),
     ),
     "health": (
         TICK,
-        Field("flags", (), "bits", "-", "see `Flag`", "i8"),
+        Field("flags", (), "bits", "-", "see `Limit`: what had to be cut or is out of its range", "i8"),
         Field("sigma_min", (), "1", "-", "smallest singular value of the end effector's Jacobian"),
         Field("joint_margin", (), "rad", "joint", "smallest distance of a joint to its range's end"),
-        Field("torque_ratio", (), "1", "joint", "largest joint torque over its limit"),
+        Field("speed_ratio", (), "1", "joint", "largest joint speed over its limit"),
+        Field("torque_ratio", (), "1", "joint", "largest joint torque over its limit, before limiting"),
         Field("uav_age", (), "s", "-", "age of the UAV sample in use"),
     ),
     "proof": (
@@ -139,50 +122,118 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
             (),
             "J",
             "-",
-            "Lyapunov function V₂ (26) of the law in use, as its estimate had it at `tick`; every fifth tick",
+            "Lyapunov function V₂ (26) of the law in use, as its estimate had it at `tick`; NaN: none",
         ),
         Field("v2_rate", (), "W", "-", "rate of V₂ that the proof promises (30)"),
     ),
     "truth": (
         TICK,
-        Field("r", (3,), "m", "world", "pivot position"),
-        Field("v", (3,), "m/s", "world", "pivot velocity"),
-        Field("v_cm", (3,), "m/s", "world", "velocity of the UAV's centre of mass"),
-        Field("quat", (4,), "1", "world<-body", "UAV attitude, scalar first"),
-        Field("omega", (3,), "rad/s", "body", "UAV angular velocity"),
-        Field("hinge_force", (3,), "N", "world", "force of the end effector on the UAV at the pivot"),
-        Field("rotor_thrust", (4,), "N", "body", "thrust of each rotor"),
-        Field("tau_uav", (3,), "N·m", "body", "torque of the rotors on the UAV"),
+        Field("r", (3,), "m", "W", "pivot on the UAV"),
+        Field("v", (3,), "m/s", "W", "its velocity"),
+        Field("r_cm", (3,), "m", "W", "UAV's centre of mass"),
+        Field("v_cm", (3,), "m/s", "W", "its velocity"),
+        Field("quat", (4,), "1", "W<-B", "UAV attitude, scalar first"),
+        Field("omega", (3,), "rad/s", "B", "UAV angular velocity"),
+        Field("plate_quat", (4,), "1", "W<-plate", "attitude of the hinge plate"),
+        Field("ee", (3,), "m", "W", "end effector point"),
+        Field("ee_v", (3,), "m/s", "W", "its velocity"),
+        Field("ee_quat", (4,), "1", "W<-E", "its attitude"),
+        Field("hinge_force", (3,), "N", "W", "force on the UAV at the hinge"),
+        Field("cradle_force", (3,), "N", "W", "force of the rails on the UAV"),
+        Field("foul", (3,), "N", "-", "contact force of the arm on cradle, floor and UAV: none of them may be touched"),
+        Field("touching", (), "1", "-", "pads of the magnet in contact with the plate", "i8"),
+        Field("rotor_thrust", (4,), "N", "B", "thrust of each rotor"),
+        Field("tau_uav", (3,), "N·m", "B", "torque of the rotors on the UAV"),
+        Field("q", ("n",), "rad", "joint", "true joint positions"),
         Field("tau", ("n",), "N·m", "joint", "joint torques that really acted"),
     ),
 }
 """The messages by name. `truth` exists in the simulator only: the judge reads it, the controller never does."""
 
 
-class Flag:
-    """Bits of `health.flags`."""
+# Kept, so that equal layouts are one object, which compiled code recognises fastest.
+@lru_cache
+def layout(message: str, joints: int) -> np.dtype:
+    """The dtype of one message for an arm with `joints` joints.
+
+    Raises:
+        KeyError: unknown message; the known ones are the keys of `MESSAGES`.
+    """
+    spec = []
+    for f in MESSAGES[message]:
+        shape = tuple(joints if s == "n" else int(s) for s in f.shape)
+        spec.append((f.name, f.type, shape) if shape else (f.name, f.type))
+    return np.dtype(spec)
+
+
+@lru_cache
+def tick_layout(joints: int) -> np.dtype:
+    """The dtype of all messages of one tick, nested by name."""
+    return np.dtype([(name, layout(name, joints)) for name in MESSAGES])
+
+
+class Tick:
+    """All messages of the tick in progress: views, shape (1,) each, of one buffer that the recorder copies whole.
+
+    Args:
+        joints: of the arm.
+        buffer: of `tick_layout` (1,), e.g. a field of a larger record; a new one if absent.
+    """
+
+    measurement: Records
+    estimate: Records
+    mission: Records
+    reference: Records
+    command: Records
+    health: Records
+    proof: Records
+    truth: Records
+
+    def __init__(self, joints: int, buffer: Records | None = None) -> None:
+        self.buffer: Records = np.zeros(1, tick_layout(joints)) if buffer is None else buffer
+        for name in MESSAGES:
+            setattr(self, name, self.buffer[name])
+
+
+class UavMode:
+    """What the UAV makes of thrust and attitude set-point."""
+
+    AUTONOMOUS = 0
+    """Hovers where it is by its own means; the set-points are ignored."""
+    GUIDED = 1
+    """Flies by the set-points; if the link is lost it hovers by its own means."""
+    HELD = 2
+    """Follows the set-points; if the link is lost it stays level with the thrust it has: the arm carries the rest."""
+    LANDED = 3
+    """Follows the set-points; if the link is lost it lets the rotors run down: the cradle carries it."""
+    OFF = 4
+    """Rotors stopped."""
+    CAUGHT = 5
+    """As `GUIDED`; on the magnet already, so it stops its rotors if one of them fails, as in `HELD`."""
+    HINGED = 6
+    """Bound to the arm for good: what arrived last counts, however old; no rotor is watched."""
+
+
+class Limit:
+    """Bits of `health.flags`: what was cut or is out of its range."""
 
     NON_FINITE = 1
-    """A measurement was not a finite number and was replaced by the last good one."""
-    TORQUE_LIMITED = 2
-    """A joint torque reached its limit."""
-    NEAR_SINGULAR = 4
-    """The Jacobian's smallest singular value is below the damping threshold."""
-    UAV_STALE = 8
-    """The UAV sample in use is older than the link's watchdog."""
+    JOINT_POSITION = 2
+    JOINT_SPEED = 4
+    JOINT_TORQUE = 8
+    TORQUE_RATE = 16
+    SINGULAR = 32
+    HINGE_FORCE = 64
+    UAV_STALE = 128
 
 
-PAPER_TABLE = MessageTable("paper", MESSAGES)
-layout, tick_layout = PAPER_TABLE.layout, PAPER_TABLE.tick_layout
-
-
-class Tick(AnyTick):
-    """The messages of a tick of the paper's loop."""
-
-    table = PAPER_TABLE
-    estimate: NDArray[np.void]
-    reference: NDArray[np.void]
-    command: NDArray[np.void]
-    health: NDArray[np.void]
-    proof: NDArray[np.void]
-    truth: NDArray[np.void]
+LIMIT_NAMES = {
+    Limit.NON_FINITE: "non_finite",
+    Limit.JOINT_POSITION: "joint_position",
+    Limit.JOINT_SPEED: "joint_speed",
+    Limit.JOINT_TORQUE: "joint_torque",
+    Limit.TORQUE_RATE: "torque_rate",
+    Limit.SINGULAR: "singularity",
+    Limit.HINGE_FORCE: "hinge_force",
+    Limit.UAV_STALE: "uav_stale",
+}

@@ -3,46 +3,60 @@
 import numpy as np
 import pytest
 
-from armland.plant.noise import BLOCK, WhiteNoise, stream
+from armland.plant.noise import BLOCK, Noise, NoiseSource, stream, uniform
 
 
-def rows(seed, name, width, blocks=1):
-    noise = WhiteNoise(seed, name, width)
-    out = []
+def rows(seed, name, blocks=1, joints=7):
+    source, out = NoiseSource(seed, joints), []
     for _ in range(blocks):
-        noise.draw()
-        out.append(noise.rows.copy())
+        source.draw()
+        out.append(getattr(source.rows, name).copy())
     return np.concatenate(out)
 
 
 def test_same_seed_and_name_give_the_same_numbers():
-    np.testing.assert_array_equal(rows(3, "imu", 6), rows(3, "imu", 6))
+    np.testing.assert_array_equal(rows(3, "imu"), rows(3, "imu"))
 
 
-@pytest.mark.parametrize(("seed", "name"), [(3, "wrench"), (4, "imu"), (3, "imu ")])
-def test_another_seed_or_name_gives_other_numbers(seed, name):
-    assert np.abs(rows(3, "imu", 6) - rows(seed, name, 6)).min() > 0.0
+def test_another_seed_or_name_gives_other_numbers():
+    assert np.abs(rows(3, "imu") - rows(4, "imu")).min() > 0.0
+    assert np.abs(rows(3, "imu") - rows(3, "wrench")).min() > 0.0
 
 
-def test_one_more_stream_does_not_move_the_others():
-    """Streams made in any order, with others between them and drawn in any order, give what each gives alone."""
-    names = ["encoders", "wrench", "imu"]
-    alone = {name: rows(7, name, 3) for name in names}
-    together = {name: WhiteNoise(7, name, 3) for name in ["wind", *reversed(names), "deck"]}
-    for noise in together.values():
-        noise.draw()
-    for name in names:
-        np.testing.assert_array_equal(together[name].rows, alone[name])
+@pytest.mark.parametrize("name", Noise._fields)
+def test_each_device_has_a_stream_of_its_own(name):
+    """What a stream gives alone it gives among all others: one more device moves nobody's noise."""
+    block = rows(7, name)
+    np.testing.assert_array_equal(block, stream(7, name).standard_normal(block.shape))
 
 
-def test_blocks_continue_one_long_draw():
-    long = stream(5, "wrench").standard_normal((3 * BLOCK, 2))
-    np.testing.assert_array_equal(rows(5, "wrench", 2, blocks=3), long)
+def test_width_of_one_device_moves_no_other():
+    np.testing.assert_array_equal(rows(7, "wrench", joints=6), rows(7, "wrench", joints=7))
+
+
+def test_blocks_continue_one_long_draw_in_the_same_arrays():
+    long = stream(5, "wrench").standard_normal((3 * BLOCK, 6))
+    np.testing.assert_array_equal(rows(5, "wrench", blocks=3), long)
+    source = NoiseSource(5, 7)
+    before = source.rows
+    source.draw()
+    assert all(a is b for a, b in zip(before, source.rows, strict=True))
+
+
+def test_restart_begins_anew():
+    source = NoiseSource(5, 7)
+    source.draw()
+    first = source.rows.link.copy()
+    source.draw()
+    assert np.abs(source.rows.link - first).min() > 0.0
+    source.restart()
+    source.draw()
+    np.testing.assert_array_equal(source.rows.link, first)
 
 
 def test_numbers_are_standard_normal_and_white():
     """30 000 rows: mean within 5/√N, variance within 5√(2/N), no correlation in time, between columns or streams."""
-    x, y = rows(1, "wrench", 3, blocks=30), rows(1, "imu", 3, blocks=30)
+    x, y = rows(1, "wrench", blocks=30), rows(1, "imu", blocks=30)
     bound = 5.0 / np.sqrt(len(x))
     assert np.abs(x.mean(axis=0)).max() < bound
     assert np.abs(x.var(axis=0) - 1.0).max() < np.sqrt(2.0) * bound
@@ -51,3 +65,11 @@ def test_numbers_are_standard_normal_and_white():
     assert np.abs(np.mean(x * y, axis=0)).max() < bound
     # Fourth moment 3: normal, not merely of unit variance.
     assert np.mean(x**4) == pytest.approx(3.0, abs=0.15)
+
+
+def test_normal_numbers_become_uniform_ones():
+    u = np.sort([uniform(x) for x in rows(1, "link").ravel()])
+    assert np.abs(u - (np.arange(u.size) + 0.5) / u.size).max() < 0.04
+    assert u.min() >= 0.0
+    assert u.max() < 1.0
+    assert uniform(40.0) < 1.0

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from armland.plant.landing_eye import CAMERA, MARKER
+from armland.plant.scene.eye import CAMERA, MARKER
 from armland.plant.sight import marker_pose, sight
 from armland.rotations import matrix
 

@@ -1,4 +1,4 @@
-"""What the commands share: progress bars, folders, and whether a start compiles."""
+"""Progress on standard error, and whether a start compiles."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -9,14 +9,15 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from armland.errors import ConfigurationError
-
-COMPILING = "Compiling the control laws: this happens once and takes about a minute."
+COMPILING = "Compiling the control laws: this happens once and takes about half a minute."
 
 
-def announce_compilation(
-    console: Console, part: str = "mission", function: str = "controller.coordinated_tick"
-) -> None:
+def diagnostics() -> Console:
+    """Standard error."""
+    return Console(stderr=True)
+
+
+def announce_compilation(console: Console, part: str = "mission", function: str = "controller.control") -> None:
     """Say so where this start compiles the laws: Numba keeps them beside their source, and none is there yet."""
     folder = Path(__file__).parents[1] / part / "__pycache__"
     if os.environ.get("NUMBA_DISABLE_JIT") != "1" and not any(folder.glob(f"{function}-*.nbc")):
@@ -51,7 +52,8 @@ def reported(bar: Progress) -> Callable[[str, int, int], None]:
 def phases_told(console: Console, mission: str) -> Iterator[Callable[[str, float], None]]:
     """Takes phase and time, s: one line that changes on a terminal, a line for each phase where there is none."""
     if console.is_terminal:
-        with console.status(mission) as status:
+        # Of the spinners this one is of letters that every terminal has.
+        with console.status(mission, spinner="line") as status:
             yield lambda phase, t: status.update(f"{t:5.1f} s  {phase}")
     else:
         yield lambda phase, t: console.print(f"{t:5.1f} s  {phase}", highlight=False)
@@ -73,17 +75,3 @@ def flights_told(console: Console, mission: str, total: int) -> Iterator[Callabl
             console.print(f"{len(flown)} of {total} flown, {sum(flown)} succeed", highlight=False)
 
     yield tell
-
-
-def make_writable(out: Path) -> None:
-    """Make the output folder; refuse what cannot be one.
-
-    Raises:
-        ConfigurationError: it is a file, or not writable.
-    """
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as e:
-        raise ConfigurationError(f"--out {str(out)!r} cannot be made a folder: {e.strerror}") from e
-    if not os.access(out, os.W_OK):
-        raise ConfigurationError(f"--out {str(out)!r} is not writable")

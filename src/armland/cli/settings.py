@@ -3,8 +3,8 @@
 import tomllib
 from typing import Any
 
-from armland.config import update
 from armland.errors import ConfigurationError
+from armland.scenario.tables import update
 
 
 def parse_settings(settings: list[str]) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 | symbol | name | unit |
 |---|---|---|
-| F | `force` (3,) of the end effector on the UAV | N, world |
+| F | `force` (3,) of the end effector on the UAV | N, D |
 | m g | `weight` of the UAV | N |
 | s_a = F_z/(m g) | `arm_share` | 1 |
 | s_r = f_T b_z/(m g) | `rotor_share`: the thrust's vertical part | 1 |
@@ -14,119 +14,84 @@ debouncing take out where it does not last.
 A trigger switches on where its value has stayed above `on` for `on_ticks` ticks, and off where it has stayed below `off` for
 `off_ticks`. Gaussian noise of standard deviation σ on each component of F exceeds `on` at a given tick with the probability
 P(χ₃ > on/σ), whatever its correlation in time; each false alarm needs at least one such tick, hence a rate of at most P times the
-tick rate (C.1).
+tick rate.
 """
 
-from typing import NamedTuple
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from armland.records import Record
+from armland.records import Record, Records
 from armland.rotations import Array
+from armland.scenario import Scenario
 
 TRIGGER = np.dtype([("on", "f8"), ("off", "f8"), ("on_ticks", "i8"), ("off_ticks", "i8")])
 SWITCH = np.dtype([("active", "i8"), ("count", "i8")])  # count: ticks in a row that speak for switching over
 
-PARAMETERS = np.dtype(
-    [
-        ("weight", "f8"),
-        ("share_gain", "f8"),  # of the shares' low pass, per tick
-        ("clearance", "f8"),  # m
-        ("contact", TRIGGER),  # on |F|, N
-        ("touchdown", TRIGGER),  # on s_g
-        ("resting", TRIGGER),  # on s_g
-        ("release", TRIGGER),  # on |F|, N; `off` and `off_ticks` count
-    ]
-)
 
-MEMORY = np.dtype(
-    [
-        ("begun", "i8"),
-        ("arm_share", "f8"),
-        ("rotor_share", "f8"),
-        ("contact", SWITCH),
-        ("touchdown", SWITCH),
-        ("resting", SWITCH),
-        ("held", SWITCH),
-    ]
-)
-
-LOAD = np.dtype(
-    [
-        ("arm_share", "f8"),
-        ("rotor_share", "f8"),
-        ("ground_share", "f8"),
-        ("contact", "i8"),  # end effector and UAV push or pull each other
-        ("touchdown", "i8"),  # cradle or ground has begun to carry
-        ("resting", "i8"),  # cradle or ground carries nearly all
-        ("released", "i8"),  # magnet off, end effector away, no force left
-    ]
-)
+@lru_cache
+def told_layout() -> np.dtype:
+    """What `detect` is told."""
+    return np.dtype(
+        [
+            ("weight", "f8"),
+            ("share_gain", "f8"),  # of the shares' low pass, per tick
+            ("clearance", "f8"),  # m
+            ("contact", TRIGGER),  # on |F|, N
+            ("touchdown", TRIGGER),  # on s_g
+            ("resting", TRIGGER),  # on s_g
+            ("release", TRIGGER),  # on |F|, N; `off` and `off_ticks` count
+        ]
+    )
 
 
-class Switching(NamedTuple):
-    """Thresholds and debouncing of one trigger."""
-
-    on: float
-    off: float
-    on_s: float
-    off_s: float
-
-
-class Contact(NamedTuple):
-    """Settings; the thresholds are assumptions."""
-
-    weight_n: float = 0.480 * 9.81
-    share_time_s: float = 0.02
-    """Time constant of the shares' low pass."""
-    clearance_m: float = 0.01
-    """Way back of the end effector after which a magnet without force has surely let go."""
-    contact_n: Switching = Switching(0.6, 0.3, 0.005, 0.10)
-    """|F|. The upper one is above what 1 m/s² of unmodelled acceleration makes of a tool of 0.3 kg."""
-    touchdown: Switching = Switching(0.15, 0.05, 0.03, 0.10)
-    """s_g."""
-    resting: Switching = Switching(0.85, 0.70, 0.10, 0.05)
-    """s_g."""
-    release_n: Switching = Switching(0.6, 0.4, 0.0, 0.10)
-    """|F|; above the magnet's residual force."""
+@lru_cache
+def kept_layout() -> np.dtype:
+    """What it keeps; zeros at first."""
+    return np.dtype(
+        [
+            ("begun", "i8"),
+            ("arm_share", "f8"),
+            ("rotor_share", "f8"),
+            ("contact", SWITCH),
+            ("touchdown", SWITCH),
+            ("resting", SWITCH),
+            ("held", SWITCH),
+        ]
+    )
 
 
-def contact_parameters(settings: Contact, tick_s: float) -> NDArray[np.void]:
-    """`PARAMETERS` (1,) for a loop with ticks of `tick_s` seconds.
+@lru_cache
+def load_layout() -> np.dtype:
+    """Who carries the UAV, as `detect` finds it."""
+    return np.dtype(
+        [
+            ("arm_share", "f8"),
+            ("rotor_share", "f8"),
+            ("ground_share", "f8"),
+            ("contact", "i8"),  # end effector and UAV push or pull each other
+            ("touchdown", "i8"),  # cradle or ground has begun to carry
+            ("resting", "i8"),  # cradle or ground carries nearly all
+            ("released", "i8"),  # magnet off, end effector away, no force left
+        ]
+    )
 
-    Raises:
-        ValueError: a trigger whose upper threshold is not above its lower one.
-    """
-    p: NDArray[np.void] = np.zeros(1, PARAMETERS)
-    p["weight"], p["clearance"] = settings.weight_n, settings.clearance_m
-    p["share_gain"] = 1.0 - np.exp(-tick_s / settings.share_time_s)
-    for name, s in (
-        ("contact", settings.contact_n),
-        ("touchdown", settings.touchdown),
-        ("resting", settings.resting),
-        ("release", settings.release_n),
+
+def told(scenario: Scenario, weight: float) -> Records:
+    """The record (1,) of `told_layout` for the settings of a scenario and the `weight` of all that flies, N."""
+    c, tick_s = scenario.estimation.contact, 1.0 / scenario.run.rate_hz
+    p: Records = np.zeros(1, told_layout())
+    p["weight"], p["clearance"] = weight, c.clearance_m
+    p["share_gain"] = 1.0 - np.exp(-tick_s / c.share_s)
+    for name, t in (
+        ("contact", c.contact_n),
+        ("touchdown", c.touchdown),
+        ("resting", c.resting),
+        ("release", c.release_n),
     ):
-        if not s.on > s.off:
-            raise ValueError(f"trigger {name}: on = {s.on:g} must be above off = {s.off:g}")
-        p[name] = (s.on, s.off, max(round(s.on_s / tick_s), 1), max(round(s.off_s / tick_s), 1))
+        p[name] = (t.on, t.off, max(round(t.on_s / tick_s), 1), max(round(t.off_s / tick_s), 1))
     return p
-
-
-def false_alarm_bound(threshold: float, sigma: float, rate_hz: float) -> float:
-    """Most false contacts per second that noise of `sigma` N per component makes at `threshold` N. Source: (C.1)."""
-    from scipy.special import gammaincc
-
-    # The noise's length has a chi distribution of three degrees of freedom.
-    return float(rate_hz * gammaincc(1.5, 0.5 * (threshold / sigma) ** 2))
-
-
-def contact_threshold(sigma: float, rate_hz: float, alarms_per_s: float) -> float:
-    """Lowest threshold, N, with at most `alarms_per_s` false contacts for noise of `sigma` N per component. Source: (C.1)."""
-    from scipy.special import gammainccinv
-
-    return float(sigma * np.sqrt(2.0 * gammainccinv(1.5, alarms_per_s / rate_hz)))
 
 
 @njit(cache=True)
@@ -145,22 +110,21 @@ def detect(
     thrust_z: float,
     magnet: bool,
     retreat: float,
-    p_: NDArray[np.void],
-    s_: NDArray[np.void],
-    load_: NDArray[np.void],
+    p: Record,
+    s: Record,
+    load: Record,
 ) -> None:
     """One tick.
 
     Args:
-        force: of the end effector on the UAV (3,), N, world, bias and tool removed.
+        force: of the end effector on the UAV (3,), N, D, bias and tool removed.
         thrust_z: vertical part of the thrust that acts, as far as is known, N.
         magnet: whether the magnet is commanded on.
         retreat: how far the end effector has moved away since the magnet was switched off, m.
-        p_: `PARAMETERS` (1,).
-        s_: `MEMORY` (1,), zeros at first, updated.
-        load_: `LOAD` (1,), written.
+        p: of `told_layout`.
+        s: of `kept_layout`, updated.
+        load: of `load_layout`, written.
     """
-    p, s, load = p_[0], s_[0], load_[0]
     gain = p.share_gain if s.begun else 1.0
     s.begun = 1
     s.arm_share += gain * (force[2] / p.weight - s.arm_share)
@@ -171,7 +135,7 @@ def detect(
     load.contact = switched(magnitude, p.contact, s.contact)
     load.touchdown = switched(load.ground_share, p.touchdown, s.touchdown)
     load.resting = switched(load.ground_share, p.resting, s.resting)
-    # No force alone proves nothing: a UAV that hovers on the magnet pulls at nothing either. The way back does.
+    # No force alone proves nothing: a UAV that hovers on the magnet pulls at nothing either. The retreat does.
     if magnet or retreat < p.clearance:
         s.held.active, s.held.count = 1, 0
     load.released = 1 - switched(magnitude, p.release, s.held)

@@ -1,14 +1,13 @@
 """Laws compared on the same demonstrator: two paths, a right and two wrong arm models, delays, a constant disturbance."""
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
-from armland.experiments.assembly import survey
-from armland.experiments.metrics import Metrics, measure
-from armland.experiments.paper import Verdict, run_experiments
+from armland.experiments.episode import Episode
+from armland.experiments.judge.tracking import Metrics
+from armland.experiments.paper import Progress, Verdict, fly_all, metrics_of, prepare
 from armland.scenario import Scenario
 
 SCALES = (1.0, 0.8, 1.2)
@@ -26,7 +25,8 @@ FULL_THRUST_N = 7.44
 HEAVY_TORQUE_NM = (0.12, 0.0, 0.0)
 """Constant torque beside it."""
 
-BEST, LAST_OF_PAPER = "observer", "E3"
+BEST, LAST_OF_PAPER, HOST = "observer", "E3", "implied"
+"""Law that shall be best; the paper's; the one whose settings a law of one's own takes."""
 
 
 @dataclass(frozen=True)
@@ -62,65 +62,59 @@ class Comparison:
 
 
 def conditions(scenario: Scenario) -> dict[str, tuple[Scenario, tuple[str, ...]]]:
-    """The conditions by name: the changed scenario and the laws that run under it (all, where none is named)."""
-    control, link = scenario.control, scenario.link
+    """The conditions by name: the changed scenario and the laws that fly under it."""
+    everyone = tuple(scenario.experiments)
+    own = tuple(name for name, e in scenario.experiments.items() if ":" in e.law)
     out: dict[str, tuple[Scenario, tuple[str, ...]]] = {}
     for scale in SCALES:
-        changed = scenario.model_copy(update={"control": control.model_copy(update={"model_inertia_scale": scale})})
-        out[f"model x {scale:g}"] = (changed, ())
+        out[f"model x {scale:g}"] = (scenario.replaced({"belief": {"arm": {"inertia_scale": scale}}}), everyone)
     if scenario.harder is not None:
-        out["harder path"] = (scenario.model_copy(update={"trajectory": scenario.harder}), ())
+        out["harder path"] = (scenario.replaced({"trajectory": scenario.harder.model_dump()}), everyone)
     for delay in DELAYS_MS:
-        changed = scenario.model_copy(update={"link": link.model_copy(update={"uplink_delay_ms": delay})})
-        out[f"delay {delay:g} ms"] = (changed, ("E3", "implied", "split", "observer"))
-    pushed = scenario.model_copy(update={"disturbance": scenario.disturbance.model_copy(update=PUSH)})
-    out["pushed"] = (pushed, ("E3", "split", "observer"))
-    full = control.model_copy(update={"thrust_n": FULL_THRUST_N})
-    turned = scenario.disturbance.model_copy(update={"torque_nm": HEAVY_TORQUE_NM})
-    out["full thrust"] = (
-        scenario.model_copy(update={"control": full, "disturbance": turned}),
-        ("split", "limits", "observer"),
-    )
+        out[f"delay {delay:g} ms"] = (
+            scenario.replaced({"link": {"uplink_delay_ms": delay}}),
+            ("E3", "implied", "split", "observer", *own),
+        )
+    out["pushed"] = (scenario.replaced({"disturbance": PUSH}), ("E3", "split", "observer", *own))
+    heavy = {"control": {"thrust_n": FULL_THRUST_N}, "disturbance": {"torque_nm": HEAVY_TORQUE_NM}}
+    out["full thrust"] = (scenario.replaced(heavy), ("split", "limits", "observer", *own))
     return out
 
 
-def compare(scenario: Scenario, progress: Callable[[str, int, int], None] | None = None) -> Comparison:
-    """Run every law of a scenario under every condition.
+def compare(scenario: Scenario, law: str | None = None, progress: Progress | None = None) -> Comparison:
+    """Fly every law of a scenario under every condition.
 
     Args:
         scenario: with the laws as its experiments; the verdicts need those of the scenario `compare`.
-        progress: called with (condition, runs done, runs in all).
+        law: a law of one's own, FILE.py:FUNCTION, that joins them; it flies everywhere as `implied` does.
+        progress: called with (condition, conditions done, conditions in all).
     """
+    if law is not None:
+        own = scenario.experiments[HOST].model_dump() | {"law": law}
+        scenario = scenario.replaced({"experiments": {law.rpartition(":")[2]: own}})
     rows: list[Row] = []
     every = conditions(scenario)
-    workplaces = {}
     for done, (name, (changed, laws)) in enumerate(every.items()):
         if progress is not None:
             progress(name, done, len(every))
-        if laws:
-            chosen = {law: e for law, e in changed.experiments.items() if law in laws}
-            changed = changed.model_copy(update={"experiments": chosen})
-        path = id(changed.trajectory)
-        if path not in workplaces:
-            workplaces[path] = survey(changed)
-        outcome = run_experiments(changed, workplaces[path])
-        for law in changed.experiments:
-            rows.append(_row(name, law, outcome.records[law], workplaces[path].legs, changed.run.rate_hz))
+        flown = fly_all(prepare(changed, [name for name in laws if name in changed.experiments]))
+        rows += [_row(name, law, episode) for law, episode in flown.items()]
     if progress is not None:
         progress("done", len(every), len(every))
     comparison = Comparison(rows, [])
     return Comparison(rows, _verdicts(comparison)) if _complete(comparison) else comparison
 
 
-def _row(condition: str, law: str, ticks: np.ndarray, legs: Any, rate: int) -> Row:
-    last = ticks[-rate:]
+def _row(condition: str, law: str, episode: Episode) -> Row:
+    rate = round(1e9 / int(episode.metadata["period_ns"]))
+    last = episode.ticks[-rate:]
     tilt = np.rad2deg(2.0 * last["truth"]["quat"][:, 1:])
     error = last["truth"]["r"] - last["reference"]["r"]
     return Row(
         condition,
         law,
-        measure(ticks, legs, rate),
-        float(ticks["health"]["torque_ratio"].max()),
+        metrics_of(episode),
+        float(episode.ticks["health"]["torque_ratio"].max()),
         float(np.linalg.norm(tilt - tilt.mean(axis=0), axis=1).max()),
         float(np.abs(error.mean(axis=0)).max()),
         float(np.linalg.norm(tilt.mean(axis=0))),

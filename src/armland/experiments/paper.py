@@ -1,18 +1,17 @@
-"""The paper's experiments E1, E2 and E3: run, record, judge against the published figures."""
+"""The paper's experiments E1, E2 and E3: flown, recorded, judged against the published figures."""
 
-import time
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from armland.experiments.assembly import Workplace, assemble
-from armland.experiments.metrics import Metrics, measure
-from armland.runtime.loop import run_loop
-from armland.runtime.recorder import Recorder
+from armland.experiments import episode
+from armland.experiments.episode import Episode, Flight
+from armland.experiments.judge.brief import Brief, Ticks
+from armland.experiments.judge.tracking import Metrics, measure
+from armland.mission.registry import MISSIONS
 from armland.scenario import Scenario
 
 PUBLISHED: dict[str, Any] = {
@@ -31,6 +30,9 @@ TOLERANCE = 0.10
 Z_RATIO = 0.5
 """Largest ratio of E3's z RMS error to E2's that counts as clearly better."""
 
+Progress = Callable[[str, int, int], None]
+"""Called with (what, done, in all)."""
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -46,12 +48,9 @@ class Verdict:
 class Outcome:
     """Everything that came of a run of the experiments."""
 
+    episodes: dict[str, Episode]
     metrics: dict[str, Metrics]
     verdicts: list[Verdict]
-    ticks: int
-    simulated_s: float
-    wall_s: float
-    records: dict[str, NDArray[np.void]]
 
     @property
     def reproduced(self) -> bool:
@@ -60,70 +59,79 @@ class Outcome:
 
     def result(self) -> dict[str, Any]:
         """The outcome as plain data, for `result.json`."""
-        return {
-            "experiments": {name: asdict(m) for name, m in self.metrics.items()},
-            "published": PUBLISHED,
-            "verdicts": [asdict(v) for v in self.verdicts],
-            "run": {
-                "ticks": self.ticks,
-                "simulated_s": self.simulated_s,
-                "wall_s": self.wall_s,
-                "real_time_factor": self.simulated_s / self.wall_s,
-            },
-        }
+        results = [e.result for e in self.episodes.values()]
+        simulated, wall = (sum(r[key] for r in results) for key in ("simulated_s", "wall_s"))
+        ticks = sum(len(e.ticks) for e in self.episodes.values())
+        run = {"ticks": ticks, "simulated_s": simulated, "wall_s": wall, "real_time_factor": simulated / wall}
+        return {**_result(self.metrics, self.verdicts), "run": run}
 
 
-def warm_up(scenario: Scenario, workplace: Workplace) -> None:
-    """Run one tick, so that the laws are compiled before anything is timed."""
-    plant, controller, tick = assemble(scenario, sorted(scenario.experiments)[0], workplace)
-    plant.connect()
-    plant.read(tick)
-    controller.update(tick)
-    plant.command(tick)
+def prepare(scenario: Scenario, names: Iterable[str] | None = None) -> dict[str, Flight]:
+    """The scenario's experiments, or those of them that are named, ready to fly.
+
+    Raises:
+        ConfigurationError: what is refused before anything moves.
+    """
+    return {
+        name: episode.prepare(scenario, name)
+        if name in MISSIONS
+        else episode.prepare(scenario, "track", experiment=name)
+        for name in (sorted(scenario.experiments) if names is None else names)
+    }
 
 
 def run_experiments(
-    scenario: Scenario,
-    workplace: Workplace,
-    logs: Path | None = None,
-    scenario_text: str = "",
-    progress: Callable[[str, int, int], None] | None = None,
+    flights: Mapping[str, Flight], logs: Path | None = None, progress: Progress | None = None
 ) -> Outcome:
-    """Run every experiment of a scenario and judge them.
+    """Fly what was prepared and judge it.
 
     Args:
-        scenario: what to run.
-        workplace: its survey.
-        logs: folder for one MCAP log per experiment; None keeps them in memory only.
-        scenario_text: attached to the logs.
-        progress: called with (experiment, ticks done, ticks in all).
+        flights: of `prepare`.
+        logs: folder for one MCAP log per experiment; None keeps the ticks in memory only.
+        progress: called with (experiment, flights done, flights in all).
     """
-    metrics: dict[str, Metrics] = {}
-    records: dict[str, NDArray[np.void]] = {}
-    rate, ticks, wall = scenario.run.rate_hz, len(workplace.path), 0.0
-    for name in sorted(scenario.experiments):
-        plant, controller, tick = assemble(scenario, name, workplace)
-        file = None if logs is None else logs / f"{name}.mcap"
-        metadata = {"experiment": name, "seed": str(scenario.run.seed), "title": scenario.title}
-        report = None if progress is None else _reporter(progress, name, ticks)
-        period_ns = round(1e9 / rate)
-        with Recorder(file, tick, period_ns, metadata, scenario=scenario_text, keep_in_memory=True) as recorder:
-            wall += run_loop(plant, controller, recorder, tick, range(ticks), report)
-            begin = time.perf_counter()
-        wall += time.perf_counter() - begin
-        records[name] = recorder.ticks
-        metrics[name] = measure(records[name], workplace.legs, rate)
-        if report is not None:
-            report(ticks)
-    total = ticks * len(metrics)
-    return Outcome(metrics, judge(metrics), total, total / rate, wall, records)
+    episodes = fly_all(flights, logs, progress)
+    metrics = {name: metrics_of(e) for name, e in episodes.items()}
+    return Outcome(episodes, metrics, judge(metrics))
 
 
-def _reporter(progress: Callable[[str, int, int], None], name: str, ticks: int) -> Callable[[int], None]:
-    return lambda done: progress(name, done, ticks)
+def fly_all(
+    flights: Mapping[str, Flight], logs: Path | None = None, progress: Progress | None = None
+) -> dict[str, Episode]:
+    """Fly what was prepared over the threads of this process; arguments as for `run_experiments`."""
+
+    def one(name: str) -> Episode:
+        return episode.fly_prepared(flights[name], None if logs is None else logs / f"{name}.mcap")
+
+    episodes = {}
+    with ThreadPoolExecutor(os.cpu_count() or 1, "experiment") as pool:
+        for done, (name, flown) in enumerate(zip(flights, pool.map(one, flights), strict=True)):
+            episodes[name] = flown
+            if progress is not None:
+                progress(name, done + 1, len(flights))
+    return episodes
 
 
-def judge(metrics: dict[str, Metrics]) -> list[Verdict]:
+def metrics_of(flown: Episode) -> Metrics:
+    """Figures of merit of an episode that followed a path."""
+    return Metrics(**flown.judgement.figures["tracking"])
+
+
+def judged(runs: Mapping[str, tuple[Ticks, Brief]]) -> dict[str, Any]:
+    """The result of experiments whose logs were read back: by name, their ticks and what the judge is told of them."""
+    metrics = {name: measure(ticks, brief.legs, brief.rate_hz) for name, (ticks, brief) in runs.items()}
+    return _result(metrics, judge(metrics))
+
+
+def _result(metrics: Mapping[str, Metrics], verdicts: list[Verdict]) -> dict[str, Any]:
+    return {
+        "experiments": {name: asdict(m) for name, m in metrics.items()},
+        "published": PUBLISHED,
+        "verdicts": [asdict(v) for v in verdicts],
+    }
+
+
+def judge(metrics: Mapping[str, Metrics]) -> list[Verdict]:
     """The verdicts that the experiments present allow."""
     verdicts = []
     for name in ("E1", "E2"):
@@ -138,12 +146,6 @@ def judge(metrics: dict[str, Metrics]) -> list[Verdict]:
             verdicts.append(Verdict(f"E2 overshoots less than E1 in {axis} (m)", two, [0.0, one], bool(two < one)))
     if {"E2", "E3"} <= metrics.keys():
         ratio = metrics["E3"].position_rms_m[2] / metrics["E2"].position_rms_m[2]
-        verdicts.append(
-            Verdict(
-                "E3 tracks z clearly better than E2 (RMS ratio)",
-                ratio,
-                [0.0, Z_RATIO],
-                bool(ratio <= Z_RATIO),
-            )
-        )
+        claim = "E3 tracks z clearly better than E2 (RMS ratio)"
+        verdicts.append(Verdict(claim, ratio, [0.0, Z_RATIO], bool(ratio <= Z_RATIO)))
     return verdicts

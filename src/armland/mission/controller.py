@@ -1,121 +1,124 @@
-"""The coordinated controller as the loop sees it: estimate, reference, law, limits, in this order at each tick."""
+"""The controller of every mission: screen, arm model, estimate, decide, refer, act, limit, in this order, in one compiled call."""
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from armland.control.coordinated import (
-    IMPLIED,
-    arm_law,
-    limit,
-    parameters_layout,
-    predict_attitude_torque,
-    prove,
-    uav_law,
-)
-from armland.estimation.state import estimate_state, memory_layout, observe_disturbance, screen
-from armland.models.arm import ArmModel
-from armland.models.operational import smallest_singular_value
-from armland.records import Flag, Record, Tick, layout
+from armland.linking import link
+from armland.mission.act import act
+from armland.mission.board import new_board
+from armland.mission.decide import decide
+from armland.mission.estimate import estimate, screen
+from armland.mission.plan import Plan
+from armland.mission.reference.refer import refer
+from armland.mission.supervisor.limits import limit
+from armland.models.arm import Views
+from armland.models.chain import coriolis_wrench, feel, refresh
+from armland.records import Record, Records, Tick
 from armland.rotations import Array
 
-SINGULARITY_PERIOD = 20
-"""Ticks between evaluations of the Jacobian's smallest singular value, which is for the record and the supervisor."""
 
-PROOF_PERIOD = 5
-"""Ticks between evaluations of V₂ for the record: as often as the UAV is heard of, at a fifth of the cost."""
-
-SINGULAR_BELOW = 0.02
-"""Smallest singular value of the Jacobian that does not raise the flag."""
-
-
-class CoordinatedController:
-    """UAV and arm as one system.
+@njit(cache=True, nogil=True)
+def control(board: Records, path: Array, arm: Views) -> None:
+    """One tick: from `measurement` to `command` of the board's messages. Never raises on bad samples.
 
     Args:
-        arm: the controller's own arm model.
-        path: desired pivot position, velocity and acceleration at each tick (ticks, 9), m, m/s, m/s², world.
-        parameters: (1,) of `parameters_layout`.
-        coriolis_feedforward: whether μ ẋ_d of (35) is fed forward.
+        board: (1,) of `mission.board.board_layout`.
+        path: (k, 9), m, m/s, m/s², deck: what a mission with a path follows; (1, 9) for the others.
+        arm: the controller's own arm model, whose memory is overwritten.
+    """
+    b = board[0]
+    screen(b)
+    refresh_arm(b, path, arm)
+    if b.kept.limit.started == 0:
+        begin(b)
+    estimate(b)
+    decide(b)
+    refer(b, path)
+    act(b, path)
+    limit(b)
+
+
+@njit(cache=True)
+def refresh_arm(b: Record, path: Array, arm: Views) -> None:
+    """Evaluate the arm's model at the screened joints into the board `b`; with it μ ẋ_d where that is fed forward.
+
+    Args:
+        b: board.
+        path: (k, 9), m, m/s, m/s², D, of which ẋ_d is taken.
+        arm: the controller's own arm model, whose memory is overwritten.
+    """
+    m = b.tick.measurement
+    for i in range(m.q.shape[0]):
+        arm.qpos[i], arm.qvel[i] = m.q[i], m.qd[i]
+    feel(arm, b.environment)
+    refresh(arm, b.arm, b.told.estimate.velocity_terms == 1)
+    if b.told.estimate.coriolis:
+        twist, mu = np.zeros(6), np.zeros(6)
+        for i in range(3):
+            twist[i] = path[min(m.tick, path.shape[0] - 1), 3 + i]
+        coriolis_wrench(arm, b.arm, twist, mu)
+        for i in range(6):
+            b.kept.estimate.mu[i] = mu[i]
+
+
+@njit(cache=True)
+def begin(b: Record) -> None:
+    """Before the first tick: the reference rests where the arm is, and the arm is held by its own weight's torques."""
+    for i in range(3):
+        b.kept.refer.r[i] = b.kept.refer.r0[i] = b.arm.position[i]
+    for i in range(b.arm.gravity.shape[0]):
+        b.kept.limit.tau[i] = b.arm.gravity[i]
+
+
+class Controller:
+    """The controller of a mission, for loops in Python.
+
+    Args:
+        plan: of `armland.mission.plan.plan`.
     """
 
-    def __init__(
-        self, arm: ArmModel, path: Array, parameters: NDArray[np.void], coriolis_feedforward: bool = False
-    ) -> None:
-        assert parameters.dtype == parameters_layout(arm.joints)
-        self.arm = arm
-        self.path = np.ascontiguousarray(path)
-        self.parameters = parameters
-        self._coriolis = coriolis_feedforward
-        self._mu = np.zeros(6)
-        self._velocity_terms = bool(parameters["acceleration"][0] == IMPLIED)
-        self._good: NDArray[np.void] = np.zeros(1, layout("measurement", arm.joints))
-        self._good["uav_quat"][0, 0] = 1.0
-        self._memory: NDArray[np.void] = np.zeros(1, memory_layout())
-        self._calls = 0
-        self._sigma_min = 0.0
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        link(plan.joints)
+        self.board = new_board(plan.joints)
+        """All that the controller is told and keeps (1,); its bytes and the arm model's are a snapshot of it."""
+        self.board["told"], self.board["table"] = plan.told, plan.table
+        self.board["environment"] = plan.environment
+        self._begin(float(plan.thrust_n))
+        self.tick = Tick(plan.joints, self.board["tick"])
+
+    def _begin(self, thrust: float) -> None:
+        kept = self.board["kept"]
+        kept["estimate"]["filter"]["align"]["quat"][..., 0] = 1.0
+        kept["estimate"]["good"]["uav_quat"][:, 0] = 1.0
+        kept["estimate"]["thrust_log"] = kept["estimate"]["acting"] = kept["act"]["thrust"] = thrust
+        kept["act"]["hover"], kept["act"]["q_d"][:, 0] = self.plan.weight_n, 1.0
+        kept["decide"]["held"] = self.board["table"]["phases"]["held"][:, 0]
+
+    @property
+    def phase(self) -> str:
+        """Name of the phase in progress."""
+        return self.plan.names[self._index]
+
+    @property
+    def final(self) -> bool:
+        """Whether the mission has ended."""
+        return bool(self.board["table"]["phases"]["final"][0, self._index])
+
+    @property
+    def _index(self) -> int:
+        return int(self.board["kept"]["decide"]["phase"][0])
+
+    def ended_for(self) -> int:
+        """Ticks for which the phase in progress has been watched, where it is a final one; else −1."""
+        kept = self.board["kept"]["decide"]
+        return int(self.tick.measurement["tick"][0] - kept["begin"][0]) if self.final else -1
 
     def update(self, tick: Tick) -> None:
-        """Fill estimate, reference, command and health of `tick` from its measurement. Never raises on bad samples."""
-        arm = self.arm
-        screen(tick.buffer, self._good, arm.qpos, arm.qvel)
-        arm.refresh(self._velocity_terms)
-        if self._calls % SINGULARITY_PERIOD == 0:
-            # The message keeps it until the next time.
-            tick.health["sigma_min"] = self._sigma_min = smallest_singular_value(arm.jacobian)
-        self._calls += 1
-        if self._sigma_min < SINGULAR_BELOW:
-            tick.health["flags"] |= Flag.NEAR_SINGULAR
-        if self._coriolis:
-            row = self.path[min(int(tick.measurement["tick"][0]), len(self.path) - 1)]
-            self._mu[:] = arm.coriolis_wrench(np.concatenate([row[3:6], np.zeros(3)]))
-        coordinated_tick(tick.buffer, self.path, self.parameters, arm.state, self._mu, self._memory)
+        """Fill estimate, mission, reference, command, health and proof of `tick` from its measurement.
 
-
-@njit(cache=True)
-def follow(path: Array, tick: int, r: Record) -> None:
-    """Fill the reference from row `tick` of `path` (ticks, 9): r_d, ṙ_d, r̈_d; past its end the last row holds."""
-    row = path[min(tick, path.shape[0] - 1)]
-    r.tick = tick
-    for i in range(3):
-        r.r[i] = row[i]
-        r.v[i] = row[3 + i]
-        r.a[i] = row[6 + i]
-    r.quat[0] = 1.0
-    for i in range(3):
-        r.quat[1 + i] = 0.0
-
-
-@njit(cache=True)
-def coordinated_tick(
-    tick: NDArray[np.void],
-    path: Array,
-    p_: NDArray[np.void],
-    arm_: NDArray[np.void],
-    mu: Array,
-    memory_: NDArray[np.void],
-) -> None:
-    """The whole tick, in the order of the loop.
-
-    Args:
-        tick: all messages (1,), `tick_layout`; `health.flags` says what screening found.
-        path: desired position, velocity, acceleration at each tick (ticks, 9), m, m/s, m/s², world.
-        p_: parameters (1,), `parameters_layout`.
-        arm_: the arm model's state (1,), `armland.models.arm.state_layout`.
-        mu: μ ẋ_d (6,), N, N·m, world; zero where it is neglected.
-        memory_: what is kept from tick to tick (1,), `memory_layout`.
-    """
-    t, p, arm, memory = tick[0], p_[0], arm_[0], memory_[0]
-    estimate_state(t.measurement, p, arm, t.estimate)
-    predict_attitude_torque(p, t.estimate)
-    observe_disturbance(t.measurement, p, memory, t.estimate)
-    follow(path, t.measurement.tick, t.reference)
-    if t.measurement.tick % PROOF_PERIOD == 0:
-        prove(t.estimate, t.reference, p, t.proof)
-    r_ddot = uav_law(t.estimate, t.reference, p, path, t.command)
-    arm_law(t.measurement, t.reference, p, arm, mu, r_ddot, t.command)
-    limit(t.measurement, p, t.command, t.health)
-    memory.thrust = t.command.thrust
-    for i in range(3):
-        memory.force[i] = t.command.force[i]
-        memory.torque[i] = t.estimate.tau_att[i] + t.command.delta_tau[i]
+        Args:
+            tick: the controller's own, `Controller.tick`.
+        """
+        assert tick.buffer.ctypes.data == self.tick.buffer.ctypes.data
+        control(self.board, self.plan.path, self.plan.arm.views)

@@ -1,46 +1,41 @@
 """The controller's model of the arm: kinematics and dynamics of one configuration, from MuJoCo's arm-only model.
 
 It is the controller's own `MjModel` and never the plant's: a wrong model is an experiment, not an accident.
-
-| symbol | name | unit |
-|---|---|---|
-| φ, φ̇ (7) | `q`, `qd` (n,) | rad, rad/s |
-| 𝒥 | `jacobian` (6, n): end effector point, world axes, linear rows first | m, 1 |
-| M | `mass_matrix` (n, n), reflected motor inertia included | kg·m² |
-| C φ̇ + g | `bias` (n,) | N·m |
-| g | `gravity` (n,) | N·m |
-| Λ = (𝒥 M⁻¹ 𝒥ᵀ)⁻¹ (4) | `lambda_ee` (6, 6) | kg, kg·m² |
+Symbols, names and units: `armland.models.chain`, which evaluates it.
 """
 
 from pathlib import Path
 
 import mujoco
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from armland.errors import ModelError
-from armland.models.chain import evaluate
+from armland.models.chain import (
+    Views,
+    bias,
+    constants_layout,
+    coriolis_wrench,
+    refresh,
+    state_layout,
+)
 from armland.models.description import EE_SITE, Tool, compile_spec, mark_end_effector, read_spec
+from armland.records import Records
+from armland.rotations import Array
 
-Array = NDArray[np.float64]
+EARTH = (0.0, 0.0, -9.81)
+"""Gravity at rest on land, m/s²."""
 
 
-def state_layout(joints: int) -> np.dtype:
-    """What `ArmModel.update` evaluates, as one record of shape (1,) that compiled laws take."""
-    return np.dtype(
-        [
-            ("jacobian", "f8", (6, joints)),
-            ("mass_matrix", "f8", (joints, joints)),
-            ("gravity", "f8", (joints,)),
-            ("lambda_ee", "f8", (6, 6)),
-            ("position", "f8", (3,)),
-            ("rotation", "f8", (3, 3)),
-            ("axis", "f8", (joints, 3)),  # joint axes, world
-            ("anchor", "f8", (joints, 3)),  # a point on each axis, m, world
-            ("coriolis", "f8", (joints,)),  # C φ̇, N·m; only where velocity terms are asked for
-            ("acceleration_bias", "f8", (6,)),  # 𝒥̇ φ̇, m/s², rad/s², world; likewise
-        ]
-    )
+@njit(cache=True)
+def _refresh(views: Views, state: Records, velocity_terms: bool) -> None:
+    refresh(views, state[0], velocity_terms)
+
+
+@njit(cache=True)
+def _coriolis_wrench(views: Views, state: Records, twist: Array, wrench: Array) -> None:
+    coriolis_wrench(views, state[0], twist, wrench)
 
 
 class ArmModel:
@@ -49,12 +44,31 @@ class ArmModel:
     The arrays are views of `state`, which `update` overwrites.
     """
 
-    def __init__(self, spec: mujoco.MjSpec, what: str = "the arm", inertia_scale: float = 1.0) -> None:
+    def __init__(
+        self,
+        spec: mujoco.MjSpec,
+        what: str = "the arm",
+        inertia_scale: float = 1.0,
+        gravity: tuple[float, float, float] = EARTH,
+    ) -> None:
+        """Compile `spec`.
+
+        Args:
+            spec: a serial arm with its end effector marked.
+            what: its name in messages.
+            inertia_scale: factor on all its masses and inertias: a deliberately wrong model.
+            gravity: (3,) m/s², axes of the arm's base.
+
+        Raises:
+            ModelError: unphysical inertia, or not a serial arm.
+        """
         model = compile_spec(spec, what)
         _check_serial(model, what)
         _scale_inertia(model, inertia_scale)
+        model.opt.gravity[:] = gravity
         self.model = model
-        self._data = mujoco.MjData(model)
+        self.data = mujoco.MjData(model)
+        """The model's `MjData` at the last update, for reading."""
         n = model.nv
         self.joints: int = n
         self.joint_names: tuple[str, ...] = tuple(model.joint(i).name for i in range(n))
@@ -69,14 +83,10 @@ class ArmModel:
         self.rotation: Array = self.state["rotation"][0]
         self.axis: Array = self.state["axis"][0]
         self.anchor: Array = self.state["anchor"][0]
-        self._bias = np.zeros(n)
-        self._body = int(model.site_bodyid[model.site(EE_SITE).id])
-        self._constants = _constants(model, self._body)
-        d, site = self._data, model.site(EE_SITE).id
-        self.qpos: Array = d.qpos
-        self.qvel: Array = d.qvel
-        pose = (d.site_xpos[site], d.site_xmat[site])
-        self._sources = (d.xaxis, d.xanchor, *pose, d.subtree_com, d.M, self._bias, self.qvel)
+        self.views = _views(model, self.data)
+        """For compiled code."""
+        self.qpos: Array = self.views.qpos
+        self.qvel: Array = self.views.qvel
         self.update(np.clip(np.zeros(n), self.q_min, self.q_max), np.zeros(n))
 
     @classmethod
@@ -103,50 +113,19 @@ class ArmModel:
 
     def refresh(self, velocity_terms: bool = False) -> None:
         """Evaluate the model at what `qpos` and `qvel` hold now; `velocity_terms` adds C φ̇ and 𝒥̇ φ̇ to `state`."""
-        m, d = self.model, self._data
-        mujoco.mj_kinematics(m, d)
-        mujoco.mj_comPos(m, d)
-        mujoco.mj_makeM(m, d)
-        if velocity_terms:
-            mujoco.mj_comVel(m, d)
-            mujoco.mj_rne(m, d, 0, self._bias)
-        evaluate(*self._sources, velocity_terms, self._constants, self.state)
+        _refresh(self.views, self.state, velocity_terms)
 
     @property
     def bias(self) -> Array:
         """C(φ, φ̇) φ̇ + g, (n,) N·m, at the last update."""
-        mujoco.mj_comVel(self.model, self._data)
-        mujoco.mj_rne(self.model, self._data, 0, self._bias)
-        return self._bias
+        bias(self.views)
+        return self.views.bias
 
     def coriolis_wrench(self, xd: Array) -> Array:
-        """μ ẋ_d, (6,) N, N·m, world, for a desired twist `xd` (6,) m/s, rad/s, at the last update.
-
-        μ = Λ (𝒥 M⁻¹ C − 𝒥̇) 𝒥̄ with C of Christoffel symbols: C(φ, φ̇) b = ½ [h(φ̇ + b) − h(φ̇) − h(b)], h the velocity-product torque.
-        Source: (3); the factorisation is ours.
-        """
-        m, d = self.model, self._data
-        b: Array = np.asarray(np.linalg.solve(self.mass_matrix, self.jacobian.T @ (self.lambda_ee @ xd)), dtype=float)
-        qd: Array = d.qvel.copy()
-        coriolis = 0.5 * (self._velocity_torque(qd + b) - self._velocity_torque(qd) - self._velocity_torque(b))
-        d.qvel[:] = qd
-        mujoco.mj_comVel(m, d)
-        rate = np.zeros((6, self.joints))
-        mujoco.mj_jacDot(m, d, rate[:3], rate[3:], self.position, self._body)
-        return self.lambda_ee @ (self.jacobian @ np.linalg.solve(self.mass_matrix, coriolis) - rate @ b)
-
-    def _velocity_torque(self, qd: Array) -> Array:
-        m, d = self.model, self._data
-        d.qvel[:] = qd
-        mujoco.mj_comVel(m, d)
-        out = np.zeros(self.joints)
-        mujoco.mj_rne(m, d, 0, out)
-        return out - self.gravity
-
-    @property
-    def data(self) -> mujoco.MjData:
-        """The model's `MjData` at the last update, for reading."""
-        return self._data
+        """μ ẋ_d, (6,) N, N·m, for a desired twist `xd` (6,) m/s, rad/s, at the last update: `chain.coriolis_wrench`."""
+        wrench = np.zeros(6)
+        _coriolis_wrench(self.views, self.state, np.asarray(xd, dtype=float), wrench)
+        return wrench
 
 
 def _check_serial(model: mujoco.MjModel, what: str) -> None:
@@ -204,16 +183,21 @@ def _torque_limits(model: mujoco.MjModel) -> Array:
     return np.where(limited, np.abs(model.jnt_actfrcrange).min(axis=1), np.inf)
 
 
-def _constants(model: mujoco.MjModel, ee_body: int) -> NDArray[np.void]:
-    n, nnz = model.nv, model.nM
-    layout = [("hinge", "i8", (n,)), ("moves_ee", "i8", (n,)), ("body", "i8", (n,)), ("weight", "f8", (n, 3))]
-    layout += [("row", "i8", (nnz,)), ("column", "i8", (nnz,))]
-    c = np.zeros(1, np.dtype(layout))
+def _views(model: mujoco.MjModel, data: mujoco.MjData) -> Views:
+    site = model.site(EE_SITE).id
+    pose = (data.site_xpos[site], data.site_xmat[site])
+    where = (model._address, data._address, data.qpos, data.qvel, model.opt.gravity, data.xaxis, data.xanchor)
+    return Views(*where, *pose, data.subtree_com, data.M, np.zeros(model.nv), _constants(model, site))
+
+
+def _constants(model: mujoco.MjModel, site: int) -> Records:
+    n, nonzeros = model.nv, model.nM
+    c = np.zeros(1, constants_layout(n, nonzeros))
+    c["ee_body"] = model.site_bodyid[site]
     c["hinge"] = model.jnt_type == int(mujoco.mjtJoint.mjJNT_HINGE)
-    c["moves_ee"] = _ancestors(model, ee_body)
+    c["moves_ee"] = _ancestors(model, int(model.site_bodyid[site]))
     c["body"] = model.jnt_bodyid
-    # Force that holds up the subtree behind each joint, N, world.
-    c["weight"] = -model.body_subtreemass[model.jnt_bodyid][:, None] * model.opt.gravity
+    c["mass"] = model.body_subtreemass[model.jnt_bodyid]
     c["row"] = np.repeat(np.arange(n), model.M_rownnz)
-    c["column"] = model.M_colind[:nnz]
+    c["column"] = model.M_colind[:nonzeros]
     return c

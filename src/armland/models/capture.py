@@ -40,7 +40,7 @@ def covered_offset(grip: Grip, angle: float = 0.0) -> float:
 
     The pad opposite is left bare first: |d − p| = R with |p| = r; at worst, along a pad, d = R − r.
     """
-    # Of four pads one lies within 45° of the way opposite.
+    # Of four pads one lies within 45° of the point opposite.
     off = (angle + 0.25 * np.pi) % (0.5 * np.pi) - 0.25 * np.pi
     R, r = grip.plate_radius, grip.pad_radius
     return float(np.sqrt(R**2 - (r * np.sin(off)) ** 2) - r * np.cos(off))
@@ -54,7 +54,10 @@ def snap_speed(grip: Grip, mass: float, closing: float, gate: float, gap: float)
 
 
 def closing_time(grip: Grip, mass: float, closing: float, gate: float, touching: float = 2e-5) -> float:
-    """Time in s from the `gate` to contact: ∫ dg / v(g), v by the magnet's work until the brake allows no more than g/(2T)."""
+    """Time, s, from the `gate`, m, passed at `closing` m/s, to a gap of `touching` m.
+
+    ∫ dg / v(g), v by the magnet's work until the brake allows no more than g/(2T).
+    """
     edges = np.geomspace(touching, gate, 200)
     middle = np.sqrt(edges[1:] * edges[:-1])
     v = np.array([min(max(snap_speed(grip, mass, closing, gate, g), 1e-3), 0.5 * g / grip.brake_s) for g in middle])
@@ -62,7 +65,7 @@ def closing_time(grip: Grip, mass: float, closing: float, gate: float, touching:
 
 
 def lateral_speed_bound(grip: Grip, mass: float, closing: float, gate: float, offset: float = 0.0) -> float:
-    """Largest lateral speed v in m/s at the `gate`: the way until contact and the way of sliding fit the clearance.
+    """Largest lateral speed v, m/s, at the `gate`, m, passed at `closing` m/s: moving until contact and sliding fit the clearance.
 
     v t + m v²/(2 μ F₀) = c; 0 where there is no clearance.
     """
@@ -74,7 +77,7 @@ def lateral_speed_bound(grip: Grip, mass: float, closing: float, gate: float, of
 
 
 def hinge_impact(grip: Grip, mass: float, body: float, arm: float, closing: float, gate: float) -> float:
-    """Largest hinge force in N as a mass that closes at `closing` m/s is braked on an arm of effective mass `arm`.
+    """Largest hinge force, N, as a `mass`, kg, that passes the `gate`, m, at `closing` m/s is braked on an arm of mass `arm`, kg.
 
     The brake is critically damped. It begins where 2ẋ/T = x/T², and ẍ is largest, v/(e T), a time T later; an approach that is
     too fast for that meets it at its reach x_r with ẍ = 2v/T − x_r/T². The hinge moves `body`, the share m_b/m of what flies.
@@ -87,7 +90,10 @@ def hinge_impact(grip: Grip, mass: float, body: float, arm: float, closing: floa
 
 
 def closing_speed_bound(grip: Grip, mass: float, body: float, arm: float, force: float, gate: float) -> float:
-    """Largest closing speed in m/s whose impact stays below `force` N at the hinge; 0 where the magnet's own snap exceeds it."""
+    """Largest closing speed, m/s, at the `gate`, m, whose impact stays below `force` N; 0 where the magnet's own snap exceeds it.
+
+    Masses `mass`, `body` and `arm`, kg, as in `hinge_impact`.
+    """
     low, high = 0.0, 10.0
     if hinge_impact(grip, mass, body, arm, low, gate) > force:
         return 0.0
@@ -107,11 +113,11 @@ def covered_tilt(grip: Grip, offset: float = 0.0) -> float:
 
 
 def righting(acceleration: float, lag: float, time: float) -> tuple[float, float]:
-    """Way in m and speed in m/s of a pivot after `time` s whose `acceleration` grows as 1 − exp(−t/lag), as the rotors' torque does."""
+    """Displacement, m, and speed, m/s, of a pivot after `time` s under an `acceleration`, m/s², that lags by `lag` s."""
     fade = 1.0 - np.exp(-time / lag)
     return float(acceleration * (0.5 * time**2 - lag * (time - lag * fade))), float(acceleration * (time - lag * fade))
 
 
 def slide(grip: Grip, mass: float, speed: float) -> float:
-    """Way in m on which the magnet's friction stops a `mass` that slides at `speed` m/s: m v²/(2 μ F₀)."""
+    """Distance in m over which the magnet's friction stops a `mass` that slides at `speed` m/s: m v²/(2 μ F₀)."""
     return mass * speed**2 / (2.0 * grip.shear_share * grip.rated_force)

@@ -143,7 +143,11 @@ def _solid(body: mujoco.MjsBody, mass: float, com: float) -> None:
 
 
 def compile_spec(spec: mujoco.MjSpec, what: str) -> mujoco.MjModel:
-    """Compile a spec; MuJoCo's complaints become a `ModelError` that names `what`."""
+    """The model that a spec describes; `what` names it in messages.
+
+    Raises:
+        ModelError: what MuJoCo complains of.
+    """
     try:
         return spec.compile()
     except (ValueError, mujoco.FatalError) as e:

@@ -22,8 +22,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from armland.models.uav import GRAVITY
-
 SLOWEST = -0.5
 """V_n/v_h below which momentum theory describes nothing any more."""
 
@@ -119,7 +117,7 @@ def factor_at_power(static: float, in_plane: float, axial: float, disc: float) -
 def factor(
     power: bool, static: float, in_plane: float, axial: float, disc: float, slope: float, advance: float
 ) -> float:
-    """t by (I.3) if `power`, else by (I.2)."""
+    """t, thrust over static thrust, 1, by (I.3) if `power`, else by (I.2)."""
     if power:
         return factor_at_power(static, in_plane, axial, disc)
     return factor_at_speed(static, in_plane, axial, disc, slope, advance)
@@ -163,7 +161,7 @@ def sustained(rotors: Rotors, speed: float, drag: float, power: bool = False) ->
 
 
 def small_gain(rotors: Rotors, speed: float, drag: float, power: bool = False) -> float:
-    """The first terms of `sustained`'s gain over the static thrust, in V²: what an oracle and a reader can check by hand.
+    """The first terms of `sustained`'s gain over the static thrust, 1, at `speed` m/s with `drag` N·s/m: what can be checked by hand.
 
     With u = V/v_h and δ = drag v_h / T₀: inflow gives k u²/(2(2 + k)), the faster air 2m u²/(2 + k), the climb along the tilted
     thrust costs k δu²/(2 + k), the tilt itself δ²u²/2.
@@ -171,8 +169,3 @@ def small_gain(rotors: Rotors, speed: float, drag: float, power: bool = False) -
     k, m = (1.0, 0.0) if power else (rotors.slope, rotors.advance)
     u, d = speed / rotors.hover_inflow, drag * rotors.hover_inflow / rotors.static
     return u * u * ((0.5 * k + 2.0 * m - k * d) / (2.0 + k) - 0.5 * d * d)
-
-
-def mass_that_hovers(rotors: Rotors) -> float:
-    """kg that the rotors just carry at rest."""
-    return rotors.static / GRAVITY

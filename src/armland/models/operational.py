@@ -11,9 +11,8 @@ added that grows smoothly to `PIVOT_THRESHOLD` at the singularity, so Λ stays f
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from armland.rotations import Array
 
 PIVOT_THRESHOLD = 0.02
 """Smallest pivot of 𝒥 M⁻¹ 𝒥ᵀ (1/kg or 1/(kg·m²)) that is inverted undamped: an apparent mass of 50 kg."""
@@ -24,7 +23,12 @@ ITERATIONS = 25
 
 @njit(cache=True)
 def cholesky(A: Array, L: Array) -> float:
-    """Lower Cholesky factor of a symmetric A (n, n) into L (n, n); returns the smallest pivot (≤ 0: not definite)."""
+    """Lower Cholesky factor of a symmetric matrix; returns the smallest pivot: 0 or less, and the matrix is not positive definite.
+
+    Args:
+        A: (n, n), of any units.
+        L: (n, n), in the units' roots, written.
+    """
     n = A.shape[0]
     smallest = np.inf
     for j in range(n):
@@ -58,7 +62,12 @@ def _forward(L: Array, B: Array, X: Array) -> None:
 
 @njit(cache=True)
 def operational_inertia(M: Array, jacobian: Array, lambda_ee: Array) -> float:
-    """Λ (4) into `lambda_ee` (6, 6), from M (n, n) and 𝒥 (6, n); returns the smallest pivot of 𝒥 M⁻¹ 𝒥ᵀ.
+    """Λ (4) of one configuration; returns the smallest pivot of 𝒥 M⁻¹ 𝒥ᵀ, 1/kg or 1/(kg·m²).
+
+    Args:
+        M: joint-space inertia (n, n), kg·m².
+        jacobian: 𝒥 (6, n), m and 1.
+        lambda_ee: Λ (6, 6), kg and kg·m², written.
 
     Source: (4); damping below `PIVOT_THRESHOLD` is ours.
     """
@@ -94,7 +103,7 @@ def operational_inertia(M: Array, jacobian: Array, lambda_ee: Array) -> float:
 
 @njit(cache=True)
 def smallest_singular_value(jacobian: Array) -> float:
-    """σ_min of 𝒥 (6, n), by inverse iteration on 𝒥𝒥ᵀ; 0 where that is not positive definite.
+    """σ_min, 1, of the `jacobian` 𝒥 (6, n), m and 1, by inverse iteration on 𝒥𝒥ᵀ; 0 where that is not positive definite.
 
     At this size it costs a tenth of a library's singular value decomposition, which the loop would feel.
     """
@@ -133,7 +142,14 @@ def smallest_singular_value(jacobian: Array) -> float:
 
 @njit(cache=True)
 def null_space_torque(tau0: Array, M: Array, jacobian: Array, lambda_ee: Array) -> Array:
-    """τ_nsp = (I − 𝒥ᵀ 𝒥̄ᵀ) τ₀, (n,): the part of `tau0` that does not accelerate the end effector."""
+    """τ_nsp = (I − 𝒥ᵀ 𝒥̄ᵀ) τ₀ (n,), N·m: the part of `tau0` (n,), N·m, that does not accelerate the end effector.
+
+    Args:
+        tau0: (n,), N·m.
+        M: joint-space inertia (n, n), kg·m².
+        jacobian: 𝒥 (6, n), m and 1.
+        lambda_ee: Λ (6, 6), kg and kg·m².
+    """
     n = M.shape[0]
     L = np.zeros((n, n))
     cholesky(M, L)
@@ -149,5 +165,14 @@ def null_space_torque(tau0: Array, M: Array, jacobian: Array, lambda_ee: Array) 
             s -= L[k, i] * y[k]
         y[i] = s / L[i, i]
     # 𝒥̄ᵀ τ₀ = Λ 𝒥 M⁻¹ τ₀: the wrench that τ₀ would put on the end effector.
-    wrench = lambda_ee @ (jacobian @ y)
-    return tau0 - jacobian.T @ wrench
+    pushed, tau = np.zeros(6), tau0.copy()
+    for i in range(6):
+        for k in range(n):
+            pushed[i] += jacobian[i, k] * y[k]
+    for i in range(6):
+        wrench = 0.0
+        for k in range(6):
+            wrench += lambda_ee[i, k] * pushed[k]
+        for k in range(n):
+            tau[k] -= jacobian[i, k] * wrench
+    return tau

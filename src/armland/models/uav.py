@@ -9,14 +9,20 @@
 [f_T, τ] = A T with A of `mixer`; row by row: 1, y_i, −x_i, ±k (reaction torque per thrust, sign by spin).
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from armland.rotations import Array
 
-GRAVITY = 9.81
-"""Acceleration of gravity, m/s²."""
+
+class UavParameters(NamedTuple):
+    """The rigid body: mass, kg; inertia (3, 3) about the CM, kg·m², body; lever (3,) from CM to pivot, m, body."""
+
+    mass: float
+    inertia: Array
+    lever: Array
 
 
 def mixer(position: Array, drag_torque: float) -> Array:

@@ -1,12 +1,36 @@
 """Named random streams: each derives from (seed, name), so that one more sensor does not move the others' noise."""
 
+import math
 import zlib
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numba import njit
+
+from armland.rotations import Array
 
 BLOCK = 1000
 """Ticks drawn at once."""
+
+CAMERA_WIDTH = 12
+"""Numbers of the camera's stream: position 3, rotation 3, delay, drop-out, outlier, the outlier's displacement 3."""
+
+
+class Noise(NamedTuple):
+    """Standard normal numbers of all devices, arrays (BLOCK, width); tick k uses row k % BLOCK."""
+
+    encoders: Array
+    """(BLOCK, 2n): positions, then velocities."""
+    wrench: Array
+    """(BLOCK, 6)."""
+    imu: Array
+    """(BLOCK, 6): attitude, rates."""
+    hover: Array
+    """(BLOCK, 3): the position that the UAV believes."""
+    camera: Array
+    """(BLOCK, CAMERA_WIDTH)."""
+    link: Array
+    """(BLOCK, 4): loss and lateness upwards, loss and lateness downwards."""
 
 
 def stream(seed: int, name: str) -> np.random.Generator:
@@ -14,13 +38,32 @@ def stream(seed: int, name: str) -> np.random.Generator:
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, zlib.crc32(name.encode())])))
 
 
-class WhiteNoise:
-    """Standard normal numbers, a row of `width` each tick, drawn block by block into `rows` (BLOCK, width)."""
+class NoiseSource:
+    """The devices' streams and the block that was drawn of them last.
 
-    def __init__(self, seed: int, name: str, width: int) -> None:
-        self._generator = stream(seed, name)
-        self.rows: NDArray[np.float64] = np.zeros((BLOCK, width))
+    Args:
+        seed: of the run.
+        joints: of the arm.
+    """
+
+    def __init__(self, seed: int, joints: int) -> None:
+        widths = (2 * joints, 6, 6, 3, CAMERA_WIDTH, 4)
+        self._seed = seed
+        self.rows = Noise(*(np.zeros((BLOCK, width)) for width in widths))
+        self.generators: tuple[np.random.Generator, ...] = ()
+        self.restart()
+
+    def restart(self) -> None:
+        """Put all streams to their begin; the block stays as it is until `draw`."""
+        self.generators = tuple(stream(self._seed, name) for name in Noise._fields)
 
     def draw(self) -> None:
-        """Replace the block."""
-        self._generator.standard_normal(out=self.rows)
+        """Replace the block, in place."""
+        for generator, rows in zip(self.generators, self.rows, strict=True):
+            generator.standard_normal(out=rows)
+
+
+@njit(cache=True)
+def uniform(normal: float) -> float:
+    """A standard normal number as one uniform in [0, 1): the streams are normal."""
+    return min(0.5 * math.erfc(-normal / math.sqrt(2.0)), 1.0 - 1e-12)

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from armland.plant.camera import Camera
-from armland.plant.landing_eye import CAMERA, MARKER
+from armland.plant.scene.eye import CAMERA, MARKER
 from armland.rotations import Array
+from armland.scenario.sensing import Camera
 
 GRID = 21
 """Points along an edge."""

@@ -1,30 +1,21 @@
 """What the loop needs of the world: the same four methods for the simulator, a replay and real devices."""
 
-from typing import Protocol, TypeVar
+from typing import Protocol
 
-from armland.records import AnyTick
-
-T = TypeVar("T", bound=AnyTick, contravariant=True)
+from armland.records import Records, Tick
 
 
-class Port(Protocol[T]):
+class Port(Protocol):
     """The world as the loop sees it."""
 
     def connect(self) -> None:
         """Get ready; afterwards `read` gives measurements."""
 
-    def read(self, tick: T) -> None:
+    def read(self, tick: Tick) -> None:
         """Fill the measurement of `tick` (and its truth, where there is one)."""
 
-    def command(self, tick: T) -> None:
-        """Apply the command of `tick` for one cycle."""
+    def command(self, tick: Tick) -> Records:
+        """Apply the command of `tick` for one cycle; returns the command (1,) as it was really applied."""
 
     def stop(self) -> None:
         """Let go safely. Never raises."""
-
-
-class Controller(Protocol[T]):
-    """What turns a measurement into a command."""
-
-    def update(self, tick: T) -> None:
-        """Fill estimate, reference, command and health of `tick` from its measurement. Never raises on bad samples."""

@@ -1,0 +1,74 @@
+"""The commands that read run logs: `report` and `log`."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from armland.cli import options
+from armland.cli.exits import EXPLAINED, Judged
+from armland.cli.results import Results, Work, publish
+from armland.errors import ConfigurationError
+
+REPORT_EPILOG = f"""**Examples**
+
+`armland report out/land/landing.mcap` makes figures, tables and result.json of a landing anew, in out/report.
+
+`armland report out/paper --out /tmp/again` does so for all logs of a folder; experiments share their figures and verdicts.
+
+{EXPLAINED}
+"""
+
+LOG_EPILOG = """**Examples**
+
+`armland log out/land/landing.mcap` says of which run a log is, how long it is, which phases were flown, and every field with its unit.
+
+`armland log out/land/landing.mcap --json | jq .metadata.seed` prints the same as data.
+"""
+
+
+def log(
+    file: Annotated[Path, typer.Argument(help="Run log (MCAP).")],
+    as_json: options.AsJson = False,
+) -> None:
+    """Say what a run log holds."""
+    from armland.runtime.log import read_log
+    from armland.view.tables.log import described, print_log
+
+    found = read_log(file)
+    if as_json:
+        print(json.dumps(described(found), indent=2))
+    else:
+        print_log(found, file)
+
+
+@options.taken(
+    files=(Annotated[list[Path], typer.Argument(metavar="LOG...", help="Run logs (MCAP), or folders of them.")], ...),
+    out=(options.out("report"), Path("out/report")),
+    **options.SHOWN,
+)
+def report(**given: Any) -> None:
+    """Make figures, tables and result.json of a run, or of the paper's experiments together, from their logs."""
+    from armland.runtime.log import read_log
+    from armland.view.report import draw, print_run, result_of, succeeded
+
+    logs = [read_log(file) for file in _logs(given["files"])]
+    result = result_of(logs)
+
+    def work(_: Results) -> Work:
+        show = (lambda folder: draw(folder, logs)) if given["figures"] else None
+        return Work(succeeded(result), result, lambda out: print_run(result, logs[0], out), show)
+
+    owned = ("*_overview.p??", "fig*.p??", "scene.png")
+    raise Judged(publish(given["out"], "result.json", owned, given["as_json"], work))
+
+
+def _logs(files: list[Path]) -> list[Path]:
+    found = []
+    for file in files:
+        inside = sorted(file.glob("*.mcap")) if file.is_dir() else [file]
+        if not inside:
+            raise ConfigurationError(f"folder {str(file)!r} holds no run log (*.mcap)")
+        found += inside
+    return found

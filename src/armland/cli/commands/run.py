@@ -1,0 +1,157 @@
+"""The commands that fly a mission: `run`, and `land` and `takeoff`, which are names for it."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+
+from armland.cli import options
+from armland.cli.console import announce_compilation, diagnostics, flights_told, phases_told
+from armland.cli.exits import EXPLAINED, Judged
+from armland.cli.results import Results, Work, publish
+
+if TYPE_CHECKING:
+    from armland.experiments.episode import Flight
+
+_EPILOG = """**Examples**
+
+`armland COMMAND` flies one MISSION of the scenario that comes with armland; figures, log and result.json go to out/FOLDER.
+
+`armland COMMAND --seed 7 --json | jq .reason` prints the result alone.
+
+`armland COMMAND calm.toml --out /tmp/calm` flies a scenario of your own; `armland schema` says what it may hold.
+
+`armland COMMAND --set imperfections.camera=false --set place.catch_m='[0.6, 0.0, 0.86]'` changes single values.
+
+`armland COMMAND --set 'faults=[{kind="link_loss", phase="PHASE", after_s=0.5}]'` lets a device fail, as `[[faults]]` with the
+same keys does in a scenario's file.
+
+`armland COMMAND --arm my_arm.urdf --ee tool0` puts your own arm in the LWR's place.
+
+`armland COMMAND --law my_file.py:my_law` controls the held UAV by your own law.
+
+`armland COMMAND --seeds 200` flies 200 seeds over all cores: spread of each figure beside its bound, campaign.json, one page.
+
+"""
+
+LAND_EPILOG = (
+    _EPILOG.replace("COMMAND", "land").replace("MISSION", "landing").replace("FOLDER", "land").replace("PHASE", "carry")
+    + EXPLAINED
+)
+TAKEOFF_EPILOG = (
+    _EPILOG.replace("COMMAND", "takeoff")
+    .replace("MISSION", "take-off")
+    .replace("FOLDER", "takeoff")
+    .replace("PHASE", "carry_up")
+    + EXPLAINED
+)
+RUN_EPILOG = f"""**Examples**
+
+`armland run landing` is `armland land`; `armland run E3` flies the third of the paper's experiments.
+
+`armland run E3 --law examples/own_law.py:my_law` flies the experiment's path by your own law.
+
+`armland run track compare --experiment observer` flies a row of a scenario's `[experiments]`.
+
+`armland run landing calm.toml --seeds 50 --jobs 2` flies a campaign.
+
+{EXPLAINED}
+"""
+
+
+MISSION = Annotated[
+    str, typer.Argument(help="Name of a mission: landing, takeoff, E1, E2, E3, track, or one of your own.")
+]
+OWN = Annotated[str | None, typer.Argument(help=f"{options.SCENARIO_HELP} The mission's own if absent.")]
+ROW = Annotated[str | None, typer.Option(help="Row of the scenario's experiments, for the mission `track`.")]
+
+
+@options.taken(
+    mission=(MISSION, ...),
+    scenario=(OWN, None),
+    experiment=(ROW, None),
+    **options.FLOWN,
+    out=(options.out("MISSION"), None),
+)
+def run(**given: Any) -> None:
+    """Fly any mission: the landing, the take-off, the paper's experiments, or a row of your own."""
+    mission = given.pop("mission")
+    _fly(mission, {**given, "out": given["out"] or Path("out") / mission})
+
+
+@options.taken(scenario=options.scenario("landing"), **options.FLOWN, out=(options.out("land"), Path("out/land")))
+def land(**given: Any) -> None:
+    """Land a UAV: approach, capture, hand-over, set-down and release, with live progress by phase."""
+    _fly("landing", given)
+
+
+@options.taken(scenario=options.scenario("landing"), **options.FLOWN, out=(options.out("takeoff"), Path("out/takeoff")))
+def takeoff(**given: Any) -> None:
+    """Take off from the cradle: lift, spin up, carry upwards, release, fly off; with live progress by phase."""
+    _fly("takeoff", given)
+
+
+def _fly(mission: str, given: dict[str, Any]) -> None:
+    from armland.mission.registry import mission_named
+
+    hinged = mission_named(mission).start == "hinged"
+    loaded = options.load(given["scenario"] or ("paper" if hinged else "landing"), given, hinged)
+    console = diagnostics()
+    announce_compilation(console)
+    from armland.experiments.episode import prepare
+
+    flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))
+    raise Judged((_campaign if given["seeds"] > 1 else _single)(flight, mission, given, console))
+
+
+def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> bool:
+    from armland.experiments.episode import fly_prepared
+    from armland.experiments.judge.brief import brief_of
+    from armland.records import MESSAGES
+    from armland.runtime.log import read_log
+    from armland.view.flown import Flown
+    from armland.view.report import draw
+    from armland.view.tables.flight import print_flight
+
+    name, log, figures, out = f"{mission}.mcap", given["log"], given["figures"], given["out"]
+
+    def work(results: Results) -> Work:
+        # The figures are made from the log, also where nobody keeps it.
+        file = results.folder / name if log else results.scratch(name) if figures else None
+        with phases_told(console, mission) as tell:
+            episode = fly_prepared(flight, file, tell)
+
+        def illustrate(folder: Path) -> None:
+            draw(folder, [read_log(out / name if log else results.scratch(name))])
+
+        run = Flown(mission, {name: episode.ticks[name] for name in MESSAGES}, brief_of(episode.metadata))
+        show = illustrate if figures else None
+        return Work(
+            episode.result["success"], episode.result, lambda folder: print_flight(episode.result, run, folder), show
+        )
+
+    return publish(out, "result.json", (name, "*_overview.p??", "fig*.p??", "scene.png"), given["as_json"], work)
+
+
+def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> bool:
+    from armland.experiments.campaign import campaign
+    from armland.experiments.episode import bounds
+    from armland.experiments.summary import summarise
+    from armland.view.figures.campaign import draw_campaign
+    from armland.view.tables.campaign import print_campaign
+
+    first, seeds, limits = flight.scenario.run.seed, given["seeds"], bounds(flight)
+    how = {"law": given["law"], "experiment": given.get("experiment"), "jobs": given["jobs"]}
+
+    def work(_: Results) -> Work:
+        with flights_told(console, mission, seeds) as tell:
+            rows = campaign(
+                flight.scenario, mission, range(first, first + seeds), **how, done=lambda row: tell(row["success"])
+            )
+        summary = summarise(rows, limits)
+        draw = (lambda folder: draw_campaign(folder, rows, limits, mission)) if given["figures"] else None
+        data = {"summary": summary.result(), "flights": rows}
+        return Work(summary.successes == seeds, data, lambda out: print_campaign(summary, rows, mission, out), draw)
+
+    return publish(given["out"], "campaign.json", (f"{mission}_campaign.p??",), given["as_json"], work)

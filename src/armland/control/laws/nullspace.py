@@ -1,0 +1,69 @@
+"""What the arm does beside its end effector: elbow pulled down, joints kept from their ends, damping; compiled.
+
+| symbol | name | unit |
+|---|---|---|
+| τ₀ | what is wished, `null_space_wish` (n,) | N·m |
+| τ_nsp | its part that moves no end effector, `models.operational.null_space_torque` | N·m |
+"""
+
+import numpy as np
+from numba import njit
+
+from armland.records import Record
+from armland.rotations import Array
+
+
+@njit(cache=True)
+def elbow_field(axis: Array, anchor: Array, elbow: int, pull: float, tau: Array) -> None:
+    """Add the joint torques of a force `pull` downwards at the elbow, the anchor of joint `elbow`, to `tau` (n,), N·m.
+
+    Args:
+        axis: joint axes (n, 3), D.
+        anchor: a point on each joint's axis (n, 3), m, D.
+        elbow: index of the elbow's joint; only the hinges before it move its anchor.
+        pull: N.
+        tau: (n,), N·m, added to.
+
+    Source: the paper's null-space behaviour, elbow pulled downwards.
+    """
+    for i in range(elbow):
+        dx, dy = anchor[elbow, 0] - anchor[i, 0], anchor[elbow, 1] - anchor[i, 1]
+        # z component of axis × lever: how fast joint i raises the elbow.
+        tau[i] -= pull * (axis[i, 0] * dy - axis[i, 1] * dx)
+
+
+@njit(cache=True)
+def range_field(q: Array, low: Array, high: Array, margin: float, stiffness: float, tau: Array) -> None:
+    """Add the joint torques that push joints away from their range's ends within `margin` to `tau` (n,), N·m.
+
+    Args:
+        q: joint positions (n,), rad.
+        low: ends of the ranges (n,), rad; −inf where there is none.
+        high: (n,), rad, likewise; inf.
+        margin: rad.
+        stiffness: N·m/rad.
+        tau: (n,), N·m, added to.
+    """
+    for i in range(q.shape[0]):
+        if q[i] < low[i] + margin:
+            tau[i] += stiffness * (low[i] + margin - q[i])
+        elif q[i] > high[i] - margin:
+            tau[i] += stiffness * (high[i] - margin - q[i])
+
+
+@njit(cache=True)
+def null_space_wish(q: Array, qd: Array, arm: Record, p: Record) -> Array:
+    """τ₀ (n,), N·m: both fields, and damping of the joints.
+
+    Args:
+        q: joint positions (n,), rad.
+        qd: joint velocities (n,), rad/s.
+        arm: of `models.chain.state_layout`.
+        p: of `control.laws.realisation.told_layout`.
+    """
+    tau = np.zeros(q.shape[0])
+    elbow_field(arm.axis, arm.anchor, p.elbow, p.elbow_force, tau)
+    range_field(q, p.q_min, p.q_max, p.range_margin, p.range_stiffness, tau)
+    for i in range(q.shape[0]):
+        tau[i] -= p.null_damping * qd[i]
+    return tau

@@ -1,0 +1,112 @@
+"""What the pose filter is told, keeps and says: structured records."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from armland.estimation.plate.alignment import ALIGNMENT
+from armland.estimation.plate.late_fusion import RING, TRACK
+from armland.records import Records
+from armland.rotations import Array
+from armland.scenario import Scenario
+
+FACE_DOWN = (0.0, 1.0, 0.0, 0.0)
+"""body<-marker: the printed face looks down."""
+
+
+@lru_cache
+def told_layout() -> np.dtype:
+    """What the filter is told."""
+    return np.dtype(
+        [
+            ("tick_s", "f8"),
+            ("mass", "f8"),
+            ("marker_offset", "f8", (3,)),
+            ("marker_quat", "f8", (4,)),
+            ("plate_offset", "f8", (3,)),
+            ("white", "f8"),
+            ("blind", "f8"),
+            ("walk", "f8"),
+            ("sigma_attitude", "f8"),
+            ("sigma_rate", "f8"),
+            ("align_walk", "f8"),
+            ("tilt_prior", "f8"),
+            ("speed_prior", "f8"),
+            ("bias_prior", "f8"),
+            ("gate", "f8"),
+            ("restart_after", "i8"),
+            ("hold", "i8"),  # ticks
+            ("age_max", "i8"),  # ticks
+            ("sigma_position_max", "f8"),
+            ("sigma_velocity_max", "f8"),
+        ]
+    )
+
+
+@lru_cache
+def kept_layout() -> np.dtype:
+    """What it keeps; zeros at first."""
+    return np.dtype(
+        [
+            ("track", TRACK),
+            ("quat", "f8", (RING, 4)),  # q_imu, carried on where no sample has come yet
+            ("lift", "f8", (RING,)),  # N
+            ("push", "f8", (RING, 3)),  # m/s² [D]: gravity and what else is known to accelerate it
+            ("camera_position", "f8", (RING, 3)),  # m, D
+            ("camera_quat", "f8", (RING, 4)),  # D<-camera
+            ("first_tick", "i8"),
+            ("imu_tick", "i8"),
+            ("rate", "f8", (3,)),  # rad/s, body
+            ("align", ALIGNMENT),
+            ("seen", "f8", (7,)),  # the last sample's numbers, to know a frozen image
+            ("sample_tick", "i8"),  # capture of the newest fused sample
+            ("gated", "i8"),  # in a row
+            (
+                "distance",
+                "f8",
+                (2,),
+            ),  # squared innovation distances of the last sample: position, attitude; χ² of 3 each
+        ]
+    )
+
+
+@lru_cache
+def plate_layout() -> np.dtype:
+    """Pose, twist and certainty of the plate, as `pose_filter.predict` fills them in."""
+    return np.dtype(
+        [
+            ("tick", "i8"),
+            ("valid", "i8"),
+            ("position", "f8", (3,)),  # m, D
+            ("velocity", "f8", (3,)),  # m/s, D
+            ("acceleration", "f8", (3,)),  # m/s², D, of the centre of mass
+            ("bias", "f8", (3,)),  # m/s², D, the part of it that no model explains: wind, thrust error
+            ("quat", "f8", (4,)),  # D<-body
+            ("omega", "f8", (3,)),  # rad/s, body
+            ("sigma_position", "f8", (3,)),  # m, D axes
+            ("sigma_velocity", "f8", (3,)),  # m/s, D axes
+            ("sigma_attitude", "f8", (3,)),  # rad, about deck axes
+            ("age", "f8"),  # s, since the capture of the newest fused sample
+        ]
+    )
+
+
+def told(scenario: Scenario, mass: float, lever: Array) -> Records:
+    """The record (1,) of `told_layout`.
+
+    Args:
+        scenario: as the controller believes it.
+        mass: of all that flies, kg.
+        lever: centre of mass to the hinge's pivot (3,), m, body.
+    """
+    f, tick_s = scenario.estimation.plate, 1.0 / scenario.run.rate_hz
+    p: Records = np.zeros(1, told_layout())
+    p["tick_s"], p["mass"] = tick_s, mass
+    p["marker_offset"], p["marker_quat"], p["plate_offset"] = scenario.camera.marker_m, FACE_DOWN, lever
+    p["sigma_attitude"], p["sigma_rate"] = scenario.sensors.attitude_rad, scenario.sensors.rate_rad_s
+    for name in ("white", "blind", "walk", "align_walk", "gate", "restart_after"):
+        p[name] = getattr(f, name)
+    p["tilt_prior"], p["speed_prior"], p["bias_prior"] = f.tilt_prior_rad, f.speed_prior_mps, f.bias_prior_mps2
+    p["hold"], p["age_max"] = round(f.hold_s / tick_s), round(f.age_max_s / tick_s)
+    p["sigma_position_max"], p["sigma_velocity_max"] = f.sigma_position_max_m, f.sigma_velocity_max_mps
+    return p

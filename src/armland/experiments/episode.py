@@ -1,0 +1,199 @@
+"""One flight as a pure function: scenario and seed in, ticks, log and judgement out."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from armland.experiments.judge.brief import Brief, brief_of
+from armland.experiments.judge.figures import NAMES
+from armland.experiments.judge.judgement import Judgement, judge
+from armland.experiments.metadata import metadata_of
+from armland.mission.controller import Controller
+from armland.mission.plan import Plan, plan
+from armland.mission.tuning import fitted
+from armland.plant.simulator import Simulator
+from armland.plant.start import check_start
+from armland.runtime import loops
+from armland.runtime.log import Log
+from armland.runtime.log.columns import columns
+from armland.runtime.recorder import Recorder
+from armland.scenario import Scenario
+
+Progress = Callable[[str, float], None]
+"""Called with phase and time, s, when a phase begins."""
+
+
+class Flight(NamedTuple):
+    """A mission that nothing speaks against: everything is checked, nothing has moved. It can be flown once."""
+
+    scenario: Scenario
+    plan: Plan
+    simulator: Simulator
+    controller: Controller
+    metadata: dict[str, str]
+    """For the log: what the judge, a report or a figure needs to know beside the ticks."""
+
+    @property
+    def period_ns(self) -> int:
+        """Length of a tick."""
+        return round(1e9 / self.scenario.run.rate_hz)
+
+    @property
+    def brief(self) -> Brief:
+        """What the judge is told."""
+        return brief_of({**self.metadata, "period_ns": str(self.period_ns)})
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One flight, flown and judged."""
+
+    result: dict[str, Any]
+    """Plain data: the judgement, and mission, experiment, law, seed, `law_failure`, `never_acted`, `log_cut_short`,
+    `real_time_factor`."""
+    ticks: NDArray[np.void] = field(repr=False)
+    """(k,) of `records.tick_layout`."""
+    log: Path | None
+    """The run log, where one was asked for."""
+    judgement: Judgement
+    metadata: dict[str, str] = field(repr=False)
+    """As it stands in the log."""
+
+    def table(self) -> dict[str, NDArray]:
+        """The ticks as flat columns (k,) by name, such as `truth.r.2`, with `time` in s: `pandas.DataFrame(episode.table())`."""
+        return columns(self.ticks, int(self.metadata["period_ns"]))
+
+
+def prepare(
+    scenario: Scenario,
+    mission: str,
+    seed: int | None = None,
+    law: str | None = None,
+    experiment: str | None = None,
+    trial: bool = False,
+) -> Flight:
+    """Check everything about a flight before anything moves or is written.
+
+    Args:
+        scenario: what is flown.
+        mission: name in `mission.registry.MISSIONS`.
+        seed: replaces the scenario's.
+        law: row of the law table, or FILE.py:FUNCTION, instead of the mission's own.
+        experiment: row of the scenario's experiments, for missions that fly one.
+        trial: whether a UAV may fly that is too heavy to hover.
+
+    Raises:
+        ConfigurationError: what is refused, with the value and its bound.
+    """
+    if seed is not None:
+        scenario = scenario.with_seed(seed)
+    made = plan(scenario, mission, law=law, experiment=experiment, trial=trial)
+    if made.experiment is not None:
+        # An experiment sets the UAV's own controller as well.
+        scenario = fitted(scenario, made.scenario, made.experiment)
+    simulator = Simulator(scenario, made.home, made.mission.start, made.names)
+    if made.mission.start == "air":
+        check_start(scenario, simulator.scene, made.home)
+    return Flight(scenario, made, simulator, Controller(made), metadata_of(scenario, made, simulator.scene.put_down))
+
+
+def fly(
+    scenario: Scenario,
+    mission: str = "landing",
+    seed: int | None = None,
+    *,
+    law: str | None = None,
+    experiment: str | None = None,
+    trial: bool = False,
+    log: Path | None = None,
+    progress: Progress | None = None,
+) -> Episode:
+    """Fly one mission and judge it. The same scenario and seed give the same ticks, byte for byte.
+
+    Args:
+        scenario: what is flown.
+        mission: name in `mission.registry.MISSIONS`.
+        seed: replaces the scenario's.
+        law: row of the law table, or FILE.py:FUNCTION, instead of the mission's own.
+        experiment: row of the scenario's experiments, for missions that fly one.
+        trial: whether a UAV may fly that is too heavy to hover.
+        log: file of the run log; none is written if absent.
+        progress: called with phase and time, s, when a phase begins.
+
+    Raises:
+        ConfigurationError: what is refused before anything moves.
+        LogError: the log cannot be created.
+    """
+    return fly_prepared(prepare(scenario, mission, seed, law, experiment, trial), log, progress)
+
+
+def fly_prepared(flight: Flight, log: Path | None = None, progress: Progress | None = None) -> Episode:
+    """Fly what was prepared and judge it; arguments and errors as for `fly`."""
+    scenario, made, simulator, controller, metadata = flight
+    period = flight.period_ns
+    with Recorder(log, made.joints, period, metadata, scenario=scenario.text, keep_in_memory=True) as recorder:
+        wall = loops.fly(simulator, controller, made, recorder, progress)
+    judgement, simulated = judge(recorder.ticks, flight.brief), 1e-9 * period * len(recorder.ticks)
+    result = {
+        **_result(judgement, metadata),
+        "law_failure": law_failure(made, controller),
+        "never_acted": never_acted(scenario, simulator.acted),
+        "log_cut_short": str(recorder.failure or ""),
+        "simulated_s": simulated,
+        "wall_s": wall,
+        "real_time_factor": simulated / wall,
+    }
+    return Episode(result, recorder.ticks, log, judgement, {**metadata, "period_ns": str(period)})
+
+
+def attempt(scenario: Scenario, mission: str, seed: int, **more: Any) -> dict[str, Any]:
+    """The result of `fly`; where it raises, a row that says what broke."""
+    try:
+        return fly(scenario, mission, seed, **more).result
+    except Exception as error:
+        reason = f"broke: {type(error).__name__}: {error}"
+        return {"mission": mission, "seed": seed, "success": False, "reason": reason, "state": "unknown"}
+
+
+def result_of_log(log: Log) -> dict[str, Any]:
+    """The result of a flight from its log; what the log does not know is left out.
+
+    Raises:
+        LogError: it lacks what judging needs.
+    """
+    return _result(judge(log.messages, brief_of(log.metadata)), log.metadata)
+
+
+def bounds(flight: Flight) -> dict[str, float]:
+    """Largest allowed values of the figures of a flight, by where they stand in its result."""
+    brief = flight.brief
+    out = {NAMES.get(c.name, c.name): c.bound for c in brief.criteria}
+    if "hinge_max" in brief.limits:
+        out["hinge_force_max_n"] = float(brief.limits["hinge_max"])
+    return {**out, "joint_torque_max_ratio": 1.0}
+
+
+def law_failure(made: Plan, controller: Controller) -> str:
+    """What a user's own law did wrong, with its tick and value; empty where it did nothing wrong."""
+    kept = controller.board["kept"]["act"]["law"][0]
+    if made.law is None or not kept["failed"]:
+        return ""
+    return made.law.explain(int(kept["failed"]), int(kept["tick"]), kept["given"], kept["returned"])
+
+
+def never_acted(scenario: Scenario, acted: Any) -> list[str]:
+    """The scenario's faults that never acted, as a reader knows them: kind, phase, time after its begin."""
+    return [
+        f"{fault.kind} ({fault.after_s:g} s after {fault.phase or 'the start'})"
+        for fault, did in zip(scenario.faults, acted, strict=True)
+        if not did
+    ]
+
+
+def _result(judgement: Judgement, metadata: dict[str, str]) -> dict[str, Any]:
+    told = {name: metadata[name] for name in ("mission", "experiment", "law")}
+    return {**told, "seed": int(metadata["seed"]), **judgement.result()}

@@ -1,0 +1,90 @@
+"""The arm's path through a mission of way points: the pose from which it begins, and whether the arm can go there and carry."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from armland.errors import ConfigurationError, WorkspaceError
+from armland.mission.feasibility.tracking import check_tracking, out_of_reach
+from armland.mission.table.mission import At, Mission
+from armland.mission.table.phases import Phase
+from armland.models.arm import ArmModel
+from armland.models.posture import UPRIGHT, check_path, home_poses, lead, pose
+from armland.rotations import Array
+from armland.scenario import Scenario
+
+BRANCHES, MARGIN_RAD = 16, 0.2
+"""Where no home is given: poses that are tried at most, and the distance to all joints' ends that is good enough."""
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def point(at: At, scenario: Scenario) -> Array:
+    """The end effector position (3,), m, deck, that `at` means."""
+    return np.array(getattr(scenario.place, at.place)) + at.height(scenario) * UP
+
+
+def targets(mission: Mission, phases: tuple[Phase, ...], scenario: Scenario) -> Array:
+    """End effector positions (phases, 3), m, deck, at which the phases that move end."""
+    return np.array([point(mission.targets.get(p.name, At("catch_m")), scenario) for p in phases])
+
+
+def survey(arm: ArmModel, scenario: Scenario, mission: Mission, weight: float) -> Array:
+    """Joint positions (n,) rad at the mission's first way point.
+
+    Args:
+        arm: the arm model (its state is overwritten).
+        scenario: believed.
+        mission: one with way points.
+        weight: of all that flies, N.
+
+    Raises:
+        WorkspaceError: a way point, or where the arm follows the UAV, out of reach.
+        ConfigurationError: joint torques beyond their limits; a home of the wrong length.
+    """
+    points = [point(at, scenario) for at in mission.points(scenario)]
+    fine = np.concatenate([np.linspace(a, b, 20) for a, b in pairwise(points)])
+    best, widest, refusal = np.zeros(arm.joints), -np.inf, WorkspaceError("")
+    for start in _starts(arm, scenario):
+        # From the pose that is known the arm is led to the first way point: no other branch of the kinematics comes in.
+        q = lead(arm, start, points[0], 25)
+        try:
+            margin = check_path(arm, q, UPRIGHT, fine, np.arange(len(fine), dtype=float))
+        except WorkspaceError as e:
+            refusal = e
+            continue
+        if margin > widest:
+            best, widest = q, margin
+        if margin > MARGIN_RAD:
+            break
+    if widest < 0.0:
+        raise WorkspaceError(
+            f"the arm cannot follow the {mission.name}'s path: {out_of_reach(refusal)}; the path is given by place.catch_m = "
+            f"{scenario.place.catch_m}, put_down_m = {scenario.place.put_down_m}, wait_below_m, above_m and withdraw_m"
+        ) from refusal
+    _check_torque(arm, best, fine, weight)
+    if mission.start == "air":
+        check_tracking(arm, best, UPRIGHT, scenario)
+    return best
+
+
+def _starts(arm: ArmModel, scenario: Scenario) -> list[Array]:
+    home = scenario.place.home_deg
+    if home is None:
+        return [p.q for p in home_poses(arm, np.array(scenario.place.catch_m), None, arm.joints // 2)[:BRANCHES]]
+    if len(home) != arm.joints:
+        raise ConfigurationError(f"place.home_deg has {len(home)} values; the arm has {arm.joints} joints")
+    return [np.deg2rad(home)]
+
+
+def _check_torque(arm: ArmModel, q: Array, points: Array, weight: float) -> None:
+    for place in points[::4]:
+        q = pose(arm, q, place)
+        # Half again as much as at rest, for what it takes to move it.
+        needed = np.abs(arm.gravity + 1.5 * weight * arm.jacobian[2])
+        worst = int((needed / arm.tau_max).argmax())
+        if needed[worst] > 0.9 * arm.tau_max[worst]:
+            raise ConfigurationError(
+                f"joint {arm.joint_names[worst]} would need {needed[worst]:.0f} N·m to carry a UAV of {weight:.1f} N at "
+                f"({', '.join(f'{x:.2f}' for x in place)}) m; 0.9 of its limit is {0.9 * arm.tau_max[worst]:.0f} N·m"
+            )

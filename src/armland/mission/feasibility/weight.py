@@ -1,0 +1,56 @@
+"""What a mission refuses before anything moves: a UAV that magnet or rotors cannot carry."""
+
+import numpy as np
+
+from armland.errors import ConfigurationError
+from armland.mission.belief import ROTORS, Flyer, rotors_of
+from armland.mission.missions.launch import gives_speed
+from armland.models.inflow import sustained
+from armland.scenario import Scenario
+
+HOVER_SHARE = 0.9
+"""Of the largest static thrust that may go into hovering: the rest is for control."""
+
+
+def check_weight(scenario: Scenario, flyer: Flyer, flies_on: bool, trial: bool) -> None:
+    """Refuse a UAV that the magnet cannot hold or the rotors cannot carry.
+
+    Args:
+        scenario: believed.
+        flyer: what flies.
+        flies_on: whether the mission leaves it at a speed that helps its rotors.
+        trial: whether a take-off with speed may be tried that momentum theory excludes.
+
+    Raises:
+        ConfigurationError: all that is too weak, each with the number and the bound.
+    """
+    weight, g = flyer.weight, flyer.gravity
+    rating, share, rotors = scenario.magnet.rating_n, scenario.limits.hinge_force_share, scenario.rotors
+    held, static = share * rating, ROTORS * rotors.max_thrust_n
+    problems = []
+    if weight > held:
+        problems.append(
+            f"the UAV weighs {weight:.1f} N; the magnet may be loaded with {held:.1f} N, "
+            f"{share:g} of its rating of {rating:g} N: at most {held / g:.2f} kg can be held"
+        )
+    if flies_on:
+        speed = float(np.hypot(*scenario.place.takeoff_velocity_mps[:2]))
+        lift = sustained(rotors_of(scenario), speed, scenario.uav.drag_nspm)
+        if weight > lift and not trial:
+            problems.append(
+                f"the UAV weighs {weight:.3f} N; at {speed:.2f} m/s its rotors carry {lift:.3f} N: at most "
+                f"{lift / g:.4f} kg can fly on at that speed"
+            )
+    elif weight > HOVER_SHARE * static:
+        lift = HOVER_SHARE * static
+        problems.append(
+            f"the UAV weighs {weight:.2f} N; its rotors give {static:.2f} N, of which {lift:.2f} N may go "
+            f"into hovering: at most {lift / g:.3f} kg can fly"
+        )
+    if problems:
+        raise ConfigurationError("\n  ".join(problems))
+
+
+def flies_on(scenario: Scenario) -> bool:
+    """Whether a take-off of the scenario leaves the UAV at a speed that it keeps with all its thrust."""
+    return gives_speed(scenario) and scenario.place.fly_on

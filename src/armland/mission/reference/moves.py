@@ -1,0 +1,158 @@
+"""The arm's reference by phase: hold, join, track, close, move, back off, give way, run up, leave; compiled.
+
+| symbol | name | unit |
+|---|---|---|
+| r_d, ṙ_d, r̈_d | `reference.r`, `.v`, `.a` (3,) of the end effector point | m, m/s, m/s², deck |
+| r₀, v₀ | `kept.r0`, `.v0` (3,): the reference when the phase began | m, m/s, deck |
+| s(u) | septic from 0 to 1 | 1 |
+| p | `kept.p` (3,): the plate's pivot, smoothed by `track` | m, deck |
+
+What speed there was runs out over `coast` s, so that no reference jumps: r₀ + v₀ T (1 − e^(−t/T)).
+"""
+
+import numpy as np
+from numba import njit
+
+from armland.mission.reference.launch import leave, run_up
+from armland.mission.reference.septic import septic
+from armland.mission.table.phases import ARM
+from armland.records import Record
+
+HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, BRAKE, LAUNCH, LEAVE, BALANCE, FOLLOW = range(len(ARM))
+
+
+@njit(cache=True)
+def move(mode: int, elapsed: float, duration: float, phase: int, e: Record, p: Record, s: Record, r: Record) -> float:
+    """Fill the reference of one tick; returns the progress of the phase's move, 0 to 1.
+
+    Args:
+        mode: index into `ARM`; of those that follow neither path nor balance.
+        elapsed: time in the phase, s.
+        duration: of its move, s.
+        phase: index, for the target.
+        e: estimate.
+        p: what the reference is told.
+        s: what it keeps.
+        r: reference, written.
+    """
+    u = elapsed / duration if duration > 0.0 else 1.0
+    T = duration if duration > 0.0 else 1.0
+    if mode == TRACK:
+        _to_plate(1.0, 0.0, 0.0, p, s, r)
+    elif mode == JOIN:
+        # The blend ends on the plate's motion, whatever that is by then.
+        b, b_dot, b_ddot = septic(u, T)
+        _to_plate(b, b_dot, b_ddot, p, s, r)
+    elif mode == CLOSE:
+        _close(u, T, p, s, r)
+    elif mode == LAUNCH:
+        _run_up(elapsed, p, s, r)
+    elif mode == LEAVE:
+        _leave(elapsed, p, s, r)
+    else:
+        _rest(elapsed, p, s, r)
+        if mode == MOVE:
+            _add_move(u, T, phase, p, s, r)
+        elif mode == BACK_OFF:
+            _lower(u, T, p.depth, r)
+        elif mode == YIELD:
+            _give_way(e, p, s, r)
+    return float(min(max(u, 0.0), 1.0))
+
+
+@njit(cache=True)
+def begin(mode: int, before: int, switched: bool, e: Record, s: Record) -> None:
+    """Remember where a phase's reference begins: where the last one was, or where the arm is, at rest.
+
+    The latter where the arm begins to give way and where the law changes: the new one then begins without a force.
+
+    Args:
+        mode: index into `ARM` of the phase that begins.
+        before: of the one that ends.
+        switched: whether the UAV is held in one of the two only.
+        e: estimate.
+        s: what the reference keeps, written.
+    """
+    for i in range(3):
+        s.r0[i], s.v0[i] = s.r[i], s.v[i]
+        if mode == YIELD and before == YIELD:
+            s.r0[i] -= s.yielded[i]
+        elif mode == YIELD:
+            s.r0[i], s.v0[i], s.yielded[i] = e.r[i], 0.0, 0.0
+        elif switched:
+            s.r0[i], s.v0[i] = e.r[i], e.v[i]
+
+
+@njit(cache=True)
+def _to_plate(b: float, b_dot: float, b_ddot: float, p: Record, s: Record, r: Record) -> None:
+    for i in range(3):
+        apart = s.p[i] - (p.standoff if i == 2 else 0.0) - s.r0[i]
+        r.r[i] = s.r0[i] + b * apart
+        r.v[i] = b_dot * apart + b * s.pv[i]
+        r.a[i] = b_ddot * apart + 2.0 * b_dot * s.pv[i] + b * s.pa[i]
+
+
+@njit(cache=True)
+def _close(u: float, duration: float, p: Record, s: Record, r: Record) -> None:
+    b, b_dot, b_ddot = septic(u, duration)
+    reach = p.standoff + p.beyond
+    for i in range(3):
+        down = 1.0 if i == 2 else 0.0
+        r.r[i] = s.p[i] - down * (p.standoff - b * reach)
+        r.v[i] = s.pv[i] + down * b_dot * reach
+        r.a[i] = s.pa[i] + down * b_ddot * reach
+
+
+@njit(cache=True)
+def _run_up(elapsed: float, p: Record, s: Record, r: Record) -> None:
+    # The displacement that lies before the run-up's begin has its speed already.
+    along, speed, rise = run_up(elapsed, p.launch_s)
+    for i in range(3):
+        more = p.launch[i] - s.v0[i]
+        r.r[i] = s.r0[i] + s.v0[i] * elapsed + more * along
+        r.v[i] = s.v0[i] + more * speed
+        r.a[i] = more * rise
+
+
+@njit(cache=True)
+def _leave(elapsed: float, p: Record, s: Record, r: Record) -> None:
+    along, speed, rise = leave(elapsed, p.launch_s, p.leave_s)
+    for i in range(3):
+        r.r[i], r.v[i], r.a[i] = s.r0[i] + s.v0[i] * along, s.v0[i] * speed, s.v0[i] * rise
+    _lower(elapsed / p.leave_s, p.leave_s, p.depth, r)
+
+
+@njit(cache=True)
+def _rest(elapsed: float, p: Record, s: Record, r: Record) -> None:
+    fade = np.exp(-elapsed / p.coast)
+    for i in range(3):
+        r.r[i] = s.r0[i] + s.v0[i] * p.coast * (1.0 - fade)
+        r.v[i] = s.v0[i] * fade
+        r.a[i] = -s.v0[i] / p.coast * fade
+
+
+@njit(cache=True)
+def _add_move(u: float, duration: float, phase: int, p: Record, s: Record, r: Record) -> None:
+    b, b_dot, b_ddot = septic(u, duration)
+    for i in range(3):
+        apart = p.targets[phase, i] - s.r0[i] - s.v0[i] * p.coast
+        r.r[i] += b * apart
+        r.v[i] += b_dot * apart
+        r.a[i] += b_ddot * apart
+
+
+@njit(cache=True)
+def _lower(u: float, duration: float, depth: float, r: Record) -> None:
+    b, b_dot, b_ddot = septic(u, duration)
+    r.r[2] -= b * depth
+    r.v[2] -= b_dot * depth
+    r.a[2] -= b_ddot * depth
+
+
+@njit(cache=True)
+def _give_way(e: Record, p: Record, s: Record, r: Record) -> None:
+    # Where the hinge's force pushes, the reference follows, within bounds.
+    for i in range(3):
+        v = -p.give_way * e.hinge_force[i]
+        s.yielded[i] = min(max(s.yielded[i] + v * p.tick_s, -p.give_way_max), p.give_way_max)
+        r.r[i] += s.yielded[i]

@@ -1,0 +1,114 @@
+"""What camera and link say of the UAV: its plate and attitude, and where the plate is on the magnet; compiled.
+
+| symbol | name | unit, frame |
+|---|---|---|
+| p, ṗ | `estimate.plate`, `.plate_v` (3,): the hinge's pivot on the UAV | m, m/s, D |
+| q | `estimate.quat` (4,) | 1, D<-B |
+| ρ_p, ρ_m | `told.lever`, `told.filter.marker_offset` (3,): pivot and marker from the centre of mass | m, body |
+"""
+
+import numpy as np
+from numba import float64, njit
+
+from armland.estimation.plate.pose_filter import fuse, predict
+from armland.estimation.plate.reckoning import advance
+from armland.linking import VECTOR, linked, named
+from armland.mission.reference.moves import LAUNCH, LEAVE
+from armland.mission.table.phases import MAGNET, UAV
+from armland.models.environment import apparent_gravity
+from armland.records import Record
+from armland.rotations import Array, conjugate, matrix, multiply, quaternion_of, turned
+
+MAGNET_ON = MAGNET.index("on")
+AUTONOMOUS, STATION, LEVEL, CRUISE = (UAV.index(name) for name in ("autonomous", "station", "level", "cruise"))
+
+
+@njit(cache=True)
+def lift_of(row: Record, act: Record, p: Record, e: Record) -> float:
+    """Force along the UAV's z axis that lifts it, N: of the rotors where it flies, else the weight.
+
+    Where arm or cradle carry, they take what the rotors leave: nothing accelerates much.
+    """
+    flies = row.uav == AUTONOMOUS or row.uav == STATION or row.uav == CRUISE
+    flies = flies or (row.uav == LEVEL and row.magnet != MAGNET_ON)
+    return float(e.thrust * p.weight / max(act.hover, 1e-3) if flies else p.weight)
+
+
+@njit(cache=True)
+def known_push(arm: int, held: bool, refer: Record, p: Record) -> Array:
+    """Acceleration (3,) of the UAV, m/s², deck, that neither thrust nor weight make: by the arm that gives it a speed, by the drag.
+
+    Args:
+        arm: index into `ARM`.
+        held: whether the arm holds the UAV.
+        refer: what the reference keeps: v, m/s, and a, m/s², of the tick before.
+        p: what the estimate is told.
+    """
+    out = np.zeros(3)
+    if arm in (LAUNCH, LEAVE):
+        for i in range(3):
+            drag = p.drag / p.mass if i < 2 else 0.0
+            out[i] = refer.a[i] - drag * refer.v[i] if held else -drag * p.launch[i]
+    return out
+
+
+@njit(cache=True)
+def take_attitude(m: Record, e: Record) -> None:
+    """The attitude as received; the plate is where the end effector is, for the hinge binds them."""
+    for i in range(3):
+        e.plate[i], e.plate_v[i], e.omega[i] = e.r[i], e.v[i], m.uav_rate[i]
+    for i in range(4):
+        e.quat[i] = m.uav_quat[i]
+    e.plate_valid = 1
+
+
+@linked(lambda n: (float64, VECTOR, named("board", n)))
+@njit(cache=True)
+def estimate_plate(lift: float, push: Array, b: Record) -> None:
+    """Pose filter on camera and link: plate, and the UAV's attitude on the deck.
+
+    Args:
+        lift: force that lifts the UAV along its z, N: rotors and, where it is held, the hinge.
+        push: (3,), m/s², deck: what else is known to accelerate it.
+        b: board; its estimate's plate and attitude are those of the tick before, and are written.
+    """
+    m, e, p, s = b.tick.measurement, b.tick.estimate, b.told.estimate, b.kept.estimate
+    eye = turned(b.arm.rotation, p.camera)
+    for i in range(3):
+        eye[i] += b.arm.position[i]
+    gravity = apparent_gravity(b.environment, e.plate, e.plate_v)
+    advance(m, lift, push, gravity, eye, quaternion_of(b.arm.rotation), p.filter, s.filter)
+    if m.camera_fresh:
+        fuse(m, p.filter, s.filter)
+    predict(0.0, p.filter, s.filter, s.plate)
+    for i in range(3):
+        e.plate[i], e.plate_v[i], e.plate_a[i] = s.plate.position[i], s.plate.velocity[i], s.plate.acceleration[i]
+        e.omega[i] = s.plate.omega[i]
+    for i in range(4):
+        e.quat[i] = s.plate.quat[i]
+    e.plate_valid, e.plate_age = s.plate.valid, s.plate.age
+
+
+@njit(cache=True)
+def look_at_grip(m: Record, p: Record, s: Record) -> None:
+    """Where the plate is on the magnet, from the newest image alone: no motion of the arm and no model comes in.
+
+    Pivot in the end effector's frame: camera + sample + R_eb (ρ_p − ρ_m), R_eb = R(sample) R_bmᵀ.
+
+    Args:
+        m: measurement.
+        p: what the estimate is told.
+        s: what it keeps, written.
+    """
+    if not m.camera_fresh:
+        return
+    marker = p.filter
+    R_eb = matrix(multiply(m.camera_quat, conjugate(marker.marker_quat)))
+    apart = 0.0
+    for i in range(3):
+        across = p.camera[i] + m.camera_position[i]
+        for k in range(3):
+            across += R_eb[i, k] * (p.lever[k] - marker.marker_offset[k])
+        apart += across**2
+    s.grip_offset, s.grip_tick = np.sqrt(apart), m.camera_capture
+    s.grip_far = s.grip_far + 1 if s.grip_offset > p.slip else 0

@@ -1,0 +1,67 @@
+"""What a mission that has not reached its goal tells the person beside it: what was found, what is so now, what to do."""
+
+from collections.abc import Mapping
+
+REMEDIES: dict[str, tuple[str, str]] = {
+    "non_finite": ("a device sends numbers that are none", "look at the device whose samples are flagged"),
+    "arm_stale": ("the joints' samples stay away or leap", "check encoders and the arm's bus, then release the brakes"),
+    "uav_silent": (
+        "the UAV's link is silent in one direction or both, or its attitude leaps",
+        "restore the link, look at the UAV's attitude sensor",
+    ),
+    "camera_stale": ("the camera has not seen the marker for too long", "clean or light the marker, check the camera"),
+    "wrench_stale": ("the force-torque sensor's samples stay away", "check the sensor's bus"),
+    "wrench_drift": (
+        "the hinge force is not what load and thrust explain",
+        "check the force sensor's zero and whether the UAV obeys its thrust command",
+    ),
+    "magnet_coil": ("the magnet's coil does not carry its current", "check coil and supply, repeat the self-test"),
+    "overload": ("the hinge force exceeds what the magnet may be loaded with", "look for what pushes or has jammed"),
+    "rotor_lost": (
+        "the UAV begins to fall over on its hinge: a rotor is lost",
+        "look at its motors before it flies again",
+    ),
+    "uav_tilt": ("the UAV is tilted beyond control", "stop its rotors and look at it"),
+    "slip": ("the plate has slid off the magnet or the load is gone", "clean magnet and plate, check the rating"),
+    "near_limit": (
+        "a joint is near its end or too fast, or the arm near a singularity",
+        "move the arm away by hand and look for what drove it there",
+    ),
+    "law_failed": (
+        "the law of the held UAV raised an exception or gave numbers that are none",
+        "look at the law: tick, law and value are named with it",
+    ),
+}
+"""Fault -> what was found; what helps."""
+
+STANDING: dict[str, str] = {
+    "done": "the arm holds",
+    "resting": "the arm comes to rest by its own impedance, the UAV stays level on its hinge",
+    "refused": "nothing has begun: the arm holds, the magnet is off, the UAV does what it did before",
+    "abort": "the arm has drawn back and holds, the magnet is off, the UAV flies by itself",
+    "holding": "the arm holds the UAV by the magnet, the UAV stays level with the thrust it has",
+    "balancing": "the arm balances the UAV upright on its hinge, or has set it down on the rails, its rotors stopped, the magnet on",
+    "let_fly": "the arm has drawn back, the magnet is off, the UAV flies by itself",
+    "secured": "the UAV stands on the cradle with its rotors stopped, the magnet on, the arm gives way",
+    "braked_refused": "nothing has begun: the arm's brakes are on, the magnet is off, the UAV does what it did before",
+    "braked_free": "the arm's brakes are on, the magnet is off, the UAV flies by itself",
+    "braked_held": "the arm's brakes are on, the magnet holds the UAV, which stays level with the thrust it has",
+    "braked_down": "the arm's brakes are on, the UAV stands on the cradle with its rotors stopped, the magnet on",
+}
+"""End -> what arm, magnet and UAV are told to do in it; whether they do, the record of a flight says."""
+
+
+def stopped(end: str, before: str, fault: str, now: str, timeouts: Mapping[str, str]) -> str:
+    """One sentence on a mission that ended in `end` after phase `before`.
+
+    Args:
+        end: name of the final phase.
+        before: phase from which it was entered.
+        fault: name of the fault; `none` after a time-out.
+        now: what arm, magnet and UAV really do, as the record of the flight has it.
+        timeouts: of the mission: phase -> why it can run out of time, and what helps.
+    """
+    if fault not in REMEDIES:
+        return f"ended in {end} after {before}: {timeouts.get(before, 'time was over')}; now {now}"
+    found, remedy = REMEDIES[fault]
+    return f"ended in {end} after {before}: {fault}, {found}; now {now}; {remedy}"

@@ -1,0 +1,214 @@
+"""What each stage of the controller is told, from the believed scenario: the numbers of the board's `told`."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from armland.control.design.balance import balance_gains, fall_rate
+from armland.control.design.gains import Wanted, exact_gains
+from armland.control.laws.realisation import told as realisation_told
+from armland.control.laws.rigid_body import ExactGains
+from armland.control.laws.settings import Row
+from armland.control.laws.settings import told as law_told
+from armland.estimation import contact, disturbance, wrench
+from armland.estimation.plate import layouts
+from armland.mission.belief import ROTORS, Flyer
+from armland.mission.board import board_layout
+from armland.mission.feasibility.launch import Launch
+from armland.mission.table.mission import Start
+from armland.models.arm import ArmModel
+from armland.records import Records
+from armland.rotations import Array
+from armland.scenario import Scenario
+from armland.scenario.control import Experiment
+
+JOINT_LEAP_RAD_S = 50.0
+"""Speed that no joint has, where the fastest is rated 3.14 rad/s: a sample that asks for more leaps."""
+
+ATTITUDE_LEAP_RAD = 0.15
+"""Turn of the UAV's attitude between two samples, beyond what its rates explain, that no UAV makes."""
+
+SWING = 0.75
+"""The wrist's share of a balancing pivot's displacement. At this one the pivot may be fastest: 0.9 to 1.1 m/s across the corners
+of its reach, against 0.6 m/s of the wrist alone and 0.3 m/s of the arm without it."""
+
+BALANCE_AGE_S = 0.05
+"""Oldest attitude that can be balanced by."""
+
+SETTLE_M, NEAR_M = 0.025, 0.010
+"""Height above the rails below which a UAV is set down and not balanced, and at which they may touch it."""
+
+CLEAR_M = 0.01
+"""Height above them from which the cradle carries nothing."""
+
+
+class Telling(NamedTuple):
+    """What the numbers are made of."""
+
+    scenario: Scenario
+    """Believed, with the experiment's gains."""
+    arm: ArmModel
+    flyer: Flyer
+    speeds: Array
+    """Rated speed (n,), rad/s, of each joint."""
+    R_d: Array
+    """(3, 3), D<-E, where the end effector points."""
+    targets: Array
+    """(phases, 3), m, deck, of the phases that move."""
+    switches: Experiment
+    """Table II's."""
+    row: Row
+    """Of the table of laws."""
+    start: Start
+    launch: Launch | None
+
+    @property
+    def hinged(self) -> bool:
+        """Whether the UAV is bound to the arm for good."""
+        return self.start == "hinged"
+
+    @property
+    def tick_s(self) -> float:
+        """From one tick to the next, s."""
+        return 1.0 / self.scenario.run.rate_hz
+
+    def ticks(self, milliseconds: float) -> int:
+        """Number of ticks, rounded, in `milliseconds`, ms."""
+        return round(milliseconds * self.scenario.run.rate_hz / 1000)
+
+
+def tell(t: Telling) -> Records:
+    """The board's `told` (1,)."""
+    told = np.zeros(1, board_layout(t.arm.joints)["told"])
+    _estimate(told["estimate"], t)
+    _decide(told["decide"], t)
+    _refer(told["refer"], t)
+    _uav(told["act"]["uav"], t)
+    _law(told["act"]["law"], t)
+    c = t.scenario.control
+    told["act"]["realisation"] = realisation_told(t.scenario, t.arm, t.R_d)
+    k, d = c.free_rad_s**2, 2.0 * c.free_damping * c.free_rad_s
+    told["act"]["stiffness"], told["act"]["damping"] = k, d
+    told["act"]["lean_stiffness"], told["act"]["lean_damping"] = k, d
+    _limit(told["limit"], t)
+    return told
+
+
+def _estimate(p: Records, t: Telling) -> None:
+    s, hinged = t.scenario, t.hinged
+    p["tick_s"], p["fused"], p["coriolis"] = t.tick_s, not hinged, hinged and s.control.coriolis_feedforward
+    p["velocity_terms"] = t.switches.acceleration == "implied"
+    p["joint_leap"] = np.inf if hinged else JOINT_LEAP_RAD_S * t.tick_s
+    p["attitude_leap"] = np.inf if hinged else ATTITUDE_LEAP_RAD
+    p["mass"], p["weight"], p["body_mass"], p["lever"] = (
+        t.flyer.mass,
+        t.flyer.weight,
+        t.flyer.body.mass,
+        t.flyer.body.lever,
+    )
+    # What is asked of a hinged UAV counts as given: what is not, is a disturbance.
+    p["uplink"] = 1 if hinged else t.ticks(s.link.uplink_delay_ms)
+    p["rotor_gain"] = 1.0 if hinged else 1.0 - np.exp(-1.0 / (s.run.rate_hz * s.rotors.time_constant_s))
+    p["drag"], p["camera"], p["slip"] = s.uav.drag_nspm, s.camera.position_m, s.limits.slip_m
+    p["launch"] = 0.0 if t.launch is None else t.launch.velocity
+    p["wrench_age"] = t.ticks(s.limits.wrench_age_ms)
+    # The published laws take the reading as it is; (X.6) takes the tool's inertia force off by itself.
+    p["tool_follows"] = 0.0 if hinged else 1.0
+    p["onboard_kp"], p["onboard_kd"] = s.onboard.kp_nm, s.onboard.kd_nms
+    p["filter"] = layouts.told(s, t.flyer.mass, t.flyer.body.lever)
+    p["wrench"], p["contact"] = wrench.told(s), contact.told(s, t.flyer.weight)
+    bandwidth, most = s.estimation.load_observer_rad_s, s.estimation.load_observer_limit_n
+    if hinged:
+        bandwidth, most = (s.control.observer_rad_s if t.switches.observer else 0.0), s.control.observer_limit_n
+    p["observer"] = disturbance.told(t.flyer.body.mass, bandwidth, most, t.tick_s, by_axis=not hinged)
+
+
+def _decide(p: Records, t: Telling) -> None:
+    s, limits, watch = t.scenario, t.scenario.limits, p["watch"]
+    p["tick_s"], p["station"], p["weight"] = t.tick_s, _station(t), t.flyer.weight
+    p["magnet_ready"], p["clear_z"] = limits.magnet_share * s.magnet.rating_n, s.place.put_down_m[2] + CLEAR_M
+    watch["tick_s"], watch["down"], watch["near"] = t.tick_s, s.place.put_down_m[2], NEAR_M
+    watch["uav_age"], watch["camera_age"] = t.ticks(limits.uav_age_ms), 1e-3 * limits.camera_age_ms
+    watch["arm_age"], watch["wrench_age"] = t.ticks(limits.arm_age_ms), t.ticks(limits.wrench_age_ms)
+    watch["unexplained"], watch["load_gone"] = limits.unexplained_n, limits.load_gone_n
+    watch["hinge_max"], watch["tilt_max"] = limits.hinge_force_share * s.magnet.rating_n, np.deg2rad(limits.tilt_deg)
+    watch["fall_rate"], watch["capture_max"] = _fall_rate(t), np.deg2rad(limits.capture_deg)
+    # m l a against the on-board attitude loop's stiffness, twice as much where it overshoots.
+    body = t.flyer.body
+    watch["tip"] = 2.0 * body.mass * np.linalg.norm(body.lever) / min(s.onboard.kp_nm[:2])
+    watch["joint_margin"], watch["sigma_min"] = limits.joint_margin_rad, limits.sigma_min
+    watch["speed_share"] = limits.joint_speed_share
+
+
+def _refer(p: Records, t: Telling) -> None:
+    s, a, place = t.scenario, t.scenario.control.approach, t.scenario.place
+    p["tick_s"], p["standoff"], p["beyond"], p["depth"] = t.tick_s, place.standoff_m, a.beyond_m, place.withdraw_m
+    p["targets"][0, : len(t.targets)] = t.targets
+    p["track"], p["track_max"], p["coast"] = a.track_rad_s, a.track_max_mps2, a.coast_s
+    p["give_way"], p["give_way_max"] = a.give_way_mpns, a.give_way_max_m
+    if t.launch is not None:
+        p["launch"], p["launch_s"], p["leave_s"] = t.launch.velocity, t.launch.run_up_s, t.launch.leave_s
+        # A speed that has to be given up runs out no faster than it was gained.
+        p["coast"] = max(a.coast_s, float(np.linalg.norm(t.launch.velocity)) / t.launch.acceleration)
+    b, limits, rate = p["balance"], s.limits, _fall_rate(t)
+    b["fall_rate"], b["gains"] = rate, balance_gains(rate) if np.isfinite(rate) else 0.0
+    b["push_max"], b["sway_max"] = limits.balance_push_mps2, limits.balance_reach_m
+    # The last joint but one tilts the tool: where it sits is the wrist.
+    b["swing"], b["wrist"] = SWING, np.linalg.norm(t.arm.position - t.arm.anchor[-2])
+    b["attitude_age"], b["lost"] = t.ticks(1e3 * BALANCE_AGE_S), limits.balance_reach_m * rate**2 / t.flyer.gravity
+    b["down"], b["settle"] = place.put_down_m[2], SETTLE_M
+
+
+def _uav(p: Records, t: Telling) -> None:
+    s, c, rotors = t.scenario, t.scenario.control, t.scenario.rotors
+    station, thrust = c.station, c.thrust
+    p["tick_s"], p["mass"], p["weight"], p["gravity"] = t.tick_s, t.flyer.mass, t.flyer.weight, t.flyer.gravity
+    p["lever"], p["drag"], p["station"], p["heading"] = t.flyer.body.lever, s.uav.drag_nspm, _station(t), 0.0
+    p["thrust_rate"], p["force_slack"], p["balance_rate"] = thrust.rate_nps, thrust.slack_n, thrust.balance_nps_per_n
+    p["thrust_min"] = ROTORS * rotors.min_thrust_n + thrust.floor_n
+    p["thrust_max"], p["hinged"] = thrust.ceiling * ROTORS * rotors.max_thrust_n, c.thrust_n
+    if t.launch is not None:
+        p["launch"] = t.launch.velocity
+        if s.place.fly_on:
+            p["fly_on"], p["thrust_max"] = 1, ROTORS * rotors.max_thrust_n
+    p["period"], p["hover_s"] = s.run.rate_hz // station.rate_hz, station.hover_s
+    p["k_position"], p["k_velocity"], p["k_integral"] = station.k_position, station.k_velocity, station.k_integral
+    p["speed_max"], p["integral_max"] = station.speed_max_mps, station.integral_max_mps2
+    p["tilt_max"] = station.tilt_max_rad
+
+
+def _law(p: Records, t: Telling) -> None:
+    s, c, body = t.scenario, t.scenario.control, t.flyer.body
+    if t.hinged:
+        gains = ExactGains(np.array(c.k1), np.array(c.k2), c.k3_attitude or c.k3, c.k3)
+    else:
+        wanted = Wanted(c.position_rad_s, c.position_damping)
+        gains = exact_gains(wanted, np.array(s.onboard.kp_nm), np.array(s.onboard.kd_nms), body)
+    p[:] = law_told(s, t.switches, t.row, body, gains)
+    # The attitude of a UAV on the magnet is the onboard controller's: the law takes it as it is.
+    p["attitude"] = t.hinged
+
+
+def _limit(p: Records, t: Telling) -> None:
+    s, limits, arm = t.scenario, t.scenario.limits, t.arm
+    p["tick_s"], p["q_min"], p["q_max"] = t.tick_s, arm.q_min, arm.q_max
+    p["qd_max"], p["tau_max"], p["sigma_min"] = t.speeds, arm.tau_max, limits.sigma_min
+    if t.hinged:
+        # As the paper's controller: the torque's limit alone.
+        p["joint_margin"], p["speed_share"], p["torque_rate"], p["hinge_max"] = -np.inf, np.inf, np.inf, np.inf
+        p["uav_age"] = t.ticks(s.link.watchdog_ms)
+        return
+    p["joint_margin"], p["speed_share"] = limits.joint_margin_rad, limits.joint_speed_share
+    p["torque_rate"], p["hinge_max"] = limits.torque_rate_nm_s, limits.hinge_force_share * s.magnet.rating_n
+    p["uav_age"] = t.ticks(limits.uav_age_ms)
+
+
+def _station(t: Telling) -> Array:
+    # A UAV that takes off flies off upwards, out of the arm's way.
+    place = t.scenario.place
+    return np.array(place.catch_m) + [0.0, 0.0, place.start_above_m if t.start == "cradle" else 0.0]
+
+
+def _fall_rate(t: Telling) -> float:
+    # A UAV on the hinge for good has its own attitude controller and is never balanced.
+    return np.inf if t.hinged else fall_rate(t.flyer.body)

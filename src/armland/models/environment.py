@@ -1,0 +1,77 @@
+"""What surrounds arm and UAV: gravity and the motion of the deck, and what they are to who moves with the deck; compiled.
+
+| symbol | name | unit, frame |
+|---|---|---|
+| g | `gravity` (3,) | m/s², D |
+| v_b, ω_b | `base_v`, `base_omega` (3,): of the deck's origin | m/s, rad/s, D |
+| a_b, ω̇_b | `base_a`, `base_alpha` (3,) | m/s², rad/s², D |
+| r, v | `r`, `v` (3,): a point and its velocity as seen from the deck | m, m/s, D |
+| γ | apparent gravity at r | m/s², D |
+
+A point that the deck sees at r, v with the acceleration a has the inertial acceleration a + g − γ, with
+
+    γ(r, v) = g − a_b − 2 ω_b × v − ω̇_b × r − ω_b × (ω_b × r)        (X.5)
+
+so that Newton's law on the deck is that on land with γ for gravity. Euler's law of a body that turns at ω against the deck has the
+inertial rate ω_I = ω + Rᵀω_b: J ω̇ = τ − ω × Jω + τ_b, τ_b of `apparent_moment`. On land all of the base's motion is zero, γ is g and
+τ_b is zero, to the last bit.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+
+from armland.records import Record, Records
+from armland.rotations import Array, cross, turned, turned_back
+
+STANDARD_GRAVITY = 9.81
+"""m/s², for closed forms on land."""
+
+DOWN = (0.0, 0.0, -STANDARD_GRAVITY)
+"""Gravity on land (3,), m/s²."""
+
+
+# Kept, so that equal layouts are one object, which compiled code recognises fastest.
+@lru_cache
+def environment_layout() -> np.dtype:
+    """Gravity and the deck's motion, as one record."""
+    return np.dtype([(name, "f8", (3,)) for name in ("gravity", "base_v", "base_omega", "base_a", "base_alpha")])
+
+
+def on_land(gravity: tuple[float, float, float] = DOWN) -> Records:
+    """The environment (1,) of a deck at rest under `gravity` (3,), m/s², deck axes."""
+    environment: Records = np.zeros(1, environment_layout())
+    environment["gravity"] = gravity
+    return environment
+
+
+@njit(cache=True)
+def apparent_gravity(environment: Record, r: Array, v: Array) -> tuple[float, float, float]:
+    """γ, m/s², D, of a point at r (3,), m, that moves with v (3,), m/s, both D. Source: theory.md 8, (X.5)."""
+    g, a, w, h = environment.gravity, environment.base_a, environment.base_omega, environment.base_alpha
+    # ω × (ω × r) = ω (ω·r) − r |ω|²
+    along, square = w[0] * r[0] + w[1] * r[1] + w[2] * r[2], w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
+    return (
+        g[0] - a[0] - 2.0 * (w[1] * v[2] - w[2] * v[1]) - (h[1] * r[2] - h[2] * r[1]) - (w[0] * along - r[0] * square),
+        g[1] - a[1] - 2.0 * (w[2] * v[0] - w[0] * v[2]) - (h[2] * r[0] - h[0] * r[2]) - (w[1] * along - r[1] * square),
+        g[2] - a[2] - 2.0 * (w[0] * v[1] - w[1] * v[0]) - (h[0] * r[1] - h[1] * r[0]) - (w[2] * along - r[2] * square),
+    )  # (X.5)
+
+
+@njit(cache=True)
+def apparent_moment(environment: Record, R: Array, omega: Array, inertia: Array) -> Array:
+    """τ_b (3,), N·m, body: what the deck's rotation seems to do to a body that turns against it.
+
+    Args:
+        environment: of `environment_layout`.
+        R: rotation (3, 3), D<-B.
+        omega: ω (3,), rad/s, body, against the deck.
+        inertia: J (3, 3), kg·m², body.
+
+    Source: (X.5); J (Rᵀω̇_b − ω × Rᵀω_b) is what the inertial rate's change holds beyond Jω̇.
+    """
+    deck = turned_back(R, environment.base_omega)
+    inertial = omega + deck
+    carried = turned(inertia, turned_back(R, environment.base_alpha) - cross(omega, deck))
+    return cross(omega, turned(inertia, omega)) - cross(inertial, turned(inertia, inertial)) - carried  # (X.5)

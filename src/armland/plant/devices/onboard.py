@@ -1,0 +1,199 @@
+"""The UAV on board: attitude loop around the set-point that arrived last, and what it does where none arrives; compiled.
+
+| symbol | name | unit |
+|---|---|---|
+| q_d, f_T, Δτ | set-point (4,), thrust and extra torque (3,) as they arrive over the link | 1, N, N·m |
+| η | `effectiveness`: torque that the rotors make of one N·m of Δτ asked for | 1 |
+
+A UAV whose link is silent for longer than its watchdog helps itself: flying, it hovers by its own position estimate (optical
+flow and sonar) and climbs away; held, it stays level with the thrust it has; on the cradle it lets the rotors run down.
+A held UAV stops all its rotors where one of them gives less than its due: the arm carries it. A UAV that is hinged on the arm for
+good stands level, by what arrived last.
+"""
+
+import numpy as np
+from numba import njit
+
+from armland.control.laws.station_keeping import StationGains, StationReference, keep_station
+from armland.models.uav import allocate
+from armland.plant.devices.attitude import attitude_layout, attitude_torque, find_disturbance, tell_attitude
+from armland.plant.devices.link import arrive
+from armland.plant.noise import Noise
+from armland.plant.scene.composition import Scene
+from armland.records import Record, Records, UavMode
+from armland.rotations import Array
+from armland.scenario import Scenario
+
+WATCHED_N = 0.3
+"""Thrust from which on a rotor is watched, N."""
+
+WEAK_SAMPLES = 2
+"""Samples in a row that make a weak rotor a lost one."""
+
+AUTONOMOUS, GUIDED, HELD, CAUGHT = UavMode.AUTONOMOUS, UavMode.GUIDED, UavMode.HELD, UavMode.CAUGHT
+LANDED, OFF, HINGED = UavMode.LANDED, UavMode.OFF, UavMode.HINGED
+
+HOVER = (
+    "k_position",
+    "k_velocity",
+    "k_integral",
+    "speed_max",
+    "integral_max",
+    "tilt_max",
+    "lift_min",
+    "thrust_max",
+)
+
+
+def told_layout(joints: int) -> np.dtype:
+    """What the UAV is told."""
+    return np.dtype(
+        [
+            ("period", "i8"),  # ticks
+            ("watchdog", "i8"),  # ticks without a message after which it helps itself
+            ("climb", "f8"),  # m, by which it climbs away
+            ("run_down", "f8"),  # N a sample
+            ("watch", "f8"),  # share of its due thrust below which a rotor counts as lost
+            ("effectiveness", "f8"),
+            ("torque_limit", "f8", (3,)),  # N·m, largest Δτ that it accepts
+            ("mass", "f8"),  # kg that it believes
+            ("hover_noise", "f8"),  # m
+            *((name, "f8") for name in HOVER),
+            ("rotor_min", "f8"),
+            ("rotor_max", "f8"),
+            ("mixer_inverse", "f8", (4, 4)),
+            *attitude_layout(),
+        ]
+    )
+
+
+def kept_layout(joints: int) -> np.dtype:
+    """What the UAV keeps."""
+    return np.dtype(
+        [
+            ("hovering", "i8"),
+            ("anchor", "f8", (3,)),  # m, W, where it hovers by itself
+            ("heading", "f8"),  # rad
+            ("integral", "f8", (3,)),  # of the hover's position loop; kept: what it knows of its own thrust
+            ("thrust", "f8"),  # N, set-point in use
+            ("filtered", "f8", (3,)),  # rate that the attitude loop's derivative has filtered, rad/s
+            ("torque", "f8", (3,)),  # N·m, that the rotors are believed to give, of the observer
+            ("impulse", "f8", (3,)),  # N·m·s, of that and of −ω × L since the last sample
+            ("momentum", "f8", (3,)),  # N·m·s, at the last sample
+            ("disturbance", "f8", (3,)),  # N·m, that it has found
+            ("weak", "i8"),  # samples for which a rotor has given too little
+            ("cut", "i8"),  # 1: stopped its rotors itself
+        ]
+    )
+
+
+def tell(told: Records, scenario: Scenario, scene: Scene, mixer: Array) -> None:
+    """Fill `told` (1,); `mixer` (4, 4), 1 and m, is the rotors', of `models.uav.mixer`."""
+    o, rate, link, rotors = scenario.onboard, scenario.run.rate_hz, scenario.link, scenario.rotors
+    told["period"], told["watchdog"] = rate // o.rate_hz, round(o.watchdog_ms * rate / 1000.0)
+    told["climb"], told["watch"], told["run_down"] = o.climb_m, o.rotor_watch, o.run_down_nps * (1.0 / o.rate_hz)
+    told["effectiveness"], told["torque_limit"] = link.torque_effectiveness, link.torque_limit_nm
+    told["mass"], told["hover_noise"] = scene.uav_mass, scenario.imperfections.hover_noise_m
+    h = o.hover
+    told["k_position"], told["k_velocity"], told["k_integral"] = h.k_position, h.k_velocity, h.k_integral
+    told["speed_max"], told["integral_max"] = h.speed_max_mps, h.integral_max_mps2
+    told["tilt_max"], told["lift_min"], told["thrust_max"] = h.tilt_max_rad, h.lift_min_n, h.thrust_max_n
+    told["rotor_min"], told["rotor_max"] = rotors.min_thrust_n, rotors.max_thrust_n
+    told["mixer_inverse"] = np.linalg.inv(mixer)
+    tell_attitude(told, scenario)
+
+
+@njit(cache=True)
+def fly(k: int, world: Record, noise: Noise, row: int, t: Record) -> None:
+    """One sample on board: what the rotors are asked for, from what has arrived over the link, or by the UAV's own means.
+
+    Args:
+        k: present tick, one of the UAV's samples.
+        world: of `world.world_layout`; what `link`, `onboard` and `rotors.asked` keep is updated.
+        noise: of the devices.
+        row: of the noise.
+        t: truth, of which the UAV's own position estimate is made.
+    """
+    told, kept = world.told, world.kept
+    p, s = told.onboard, kept.onboard
+    arrive(k, told.link, kept.link, noise.link[row])
+    arrived = kept.link.arrived
+    mode, silent = arrived.mode, k - kept.link.heard > p.watchdog
+    q_d, extra = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
+    if kept.faults.deaf or mode == AUTONOMOUS or (silent and mode in (GUIDED, CAUGHT)):
+        q_d = _hover(world, t, noise.hover[row], p.climb if silent else 0.0)
+    else:
+        s.hovering = 0
+        if mode != HINGED:
+            q_d = arrived.quat.copy()
+        for i in range(3):
+            extra[i] = p.effectiveness * min(max(arrived.delta_tau[i], -p.torque_limit[i]), p.torque_limit[i])
+        if mode == OFF:
+            s.thrust = 0.0
+        elif silent and mode == LANDED:
+            s.thrust = max(s.thrust - p.run_down, 0.0)
+        elif not silent or mode == HINGED:
+            s.thrust = arrived.thrust
+    asked = kept.rotors.asked
+    if _watch(mode, p, s, kept.rotors) or s.thrust <= 0.0:
+        for i in range(4):
+            asked[i] = 0.0
+        return
+    torque = attitude_torque(kept.imu.quat, kept.imu.rate, q_d, p, s)
+    found = find_disturbance(kept.imu.rate, extra, asked, told.rotors.mixer, p, s)
+    for i in range(3):
+        torque[i] = torque[i] + extra[i] - found[i]
+    rotor = allocate(s.thrust, torque, p.mixer_inverse, p.rotor_min, p.rotor_max)
+    for i in range(4):
+        asked[i] = rotor[i]
+
+
+@njit(cache=True)
+def _watch(mode: int, p: Record, s: Record, rotors: Record) -> bool:
+    # Each motor's speed is known on board. Held, a UAV with a lost rotor stops the others: all four run down alike, and what
+    # tips it over is no more than what came before. Flying, it has no better choice than to go on.
+    weak = False
+    for k in range(4):
+        weak = weak or (rotors.due[k] > WATCHED_N and rotors.static[k] < p.watch * rotors.due[k])
+    s.weak = s.weak + 1 if weak else 0
+    s.cut = 1 if mode in (HELD, CAUGHT) and (s.cut or s.weak >= WEAK_SAMPLES) else 0
+    return bool(s.cut)
+
+
+@njit(cache=True)
+def _hover(world: Record, t: Record, noise: Array, climb: float) -> Array:
+    # Own position estimate: the true one and white noise, in the UAV's own idea of the axes.
+    kept, bias = world.kept, world.told.imu.bias
+    p, s, quat = world.told.onboard, kept.onboard, kept.imu.quat
+    if not s.hovering:
+        s.hovering = 1
+        s.heading = 2.0 * np.arctan2(quat[3], quat[0])
+        for i in range(3):
+            s.anchor[i] = t.r_cm[i] + (climb if i == 2 else 0.0)
+    own = 2.0 * np.arctan2(bias[3], bias[0])
+    c, d, e = np.cos(own), np.sin(own), np.empty(3)
+    for i in range(3):
+        e[i] = (s.anchor[i] + kept.faults.away[i]) - (t.r_cm[i] + p.hover_noise * noise[i])
+    v, still = t.v_cm, np.zeros(3)
+    turned = np.array([c * e[0] - d * e[1], d * e[0] + c * e[1], e[2]])
+    moving = np.array([c * v[0] - d * v[1], d * v[0] + c * v[1], v[2]])
+    gains = StationGains(
+        p.mass,
+        p.period_s,
+        p.k_position,
+        p.k_velocity,
+        p.k_integral,
+        p.speed_max,
+        p.integral_max,
+        p.tilt_max,
+        p.lift_min,
+        p.thrust_max,
+    )
+    reference = StationReference(turned, still, still, s.heading)
+    g = world.environment.gravity
+    here = still, moving, quat.copy()
+    thrust, q_d, integral = keep_station(*here, reference, still, gains, s.integral.copy(), (g[0], g[1], g[2]))
+    s.thrust = thrust
+    for i in range(3):
+        s.integral[i] = integral[i]
+    return q_d

@@ -1,0 +1,116 @@
+"""The UAV's rotors, and what the air and what no model knows do to it.
+
+| symbol | name | unit, frame |
+|---|---|---|
+| T_i* | `asked` (4,): thrust that the controller on board asks of each rotor | N |
+| g_i | `gain` (4,): thrust given over thrust asked for | 1 |
+| T_i | `static` (4,): thrust that each would give at rest, T ← T + α (g h T* − T) with h its health | N |
+| α | `lag`: share of a step that a rotor makes in one tick | 1 |
+| | `due` (4,): the same where all is well: what each is expected to give | N |
+| | `lift` (4,): thrust that each gives, moving through the air, `models.inflow` (I.2) | N |
+| c | `drag`: linear, horizontal | N·s/m |
+| v_a | `air` (3,): velocity of the air | m/s, W |
+| | `force` (3,), `moment` (3,): constant disturbance at the centre of mass | N [W], N·m [B] |
+"""
+
+import numpy as np
+from numba import njit
+
+from armland.models.inflow import advance_of, disc_of, factor_at_speed
+from armland.models.uav import mixer
+from armland.plant.scene.composition import Scene
+from armland.plant.scene.uav import ROTORS, UAV
+from armland.records import Record, Records
+from armland.rotations import Array, from_rotation_vector, matrix, multiply
+from armland.scenario import Scenario
+
+
+def told_layout(joints: int) -> np.dtype:
+    """What the rotors are told."""
+    return np.dtype(
+        [
+            ("mixer", "f8", (4, 4)),  # [thrust, torque] of the four thrusts, `models.uav.mixer`
+            ("lag", "f8"),
+            ("tick_s", "f8"),
+            ("gain", "f8", (4,)),
+            ("inflow", "i8"),  # 1 where the rotors feel their own motion
+            ("disc", "f8"),  # 2ρA of one rotor, kg/m
+            ("slope", "f8"),
+            ("advance", "f8"),
+            ("drag", "f8"),
+            ("air", "f8", (3,)),
+            ("force", "f8", (3,)),
+            ("moment", "f8", (3,)),
+        ]
+    )
+
+
+def kept_layout(joints: int) -> np.dtype:
+    """What the rotors keep."""
+    return np.dtype([(name, "f8", (4,)) for name in ("asked", "static", "due", "lift")])
+
+
+def tell(told: Records, scenario: Scenario, scene: Scene, thrust_factor: float) -> None:
+    """Fill `told` (1,); `thrust_factor`, of all rotors, is the ratio of thrust given to thrust asked for."""
+    r, rate = scenario.rotors, scenario.run.rate_hz
+    place = np.array([scene.model.site(f"{UAV}rotor_{i + 1}").pos for i in range(ROTORS)])
+    told["mixer"] = mixer(place - scene.model.site(f"{UAV}cm").pos, r.drag_torque_m)
+    told["lag"], told["tick_s"] = 1.0 - np.exp(-1.0 / (rate * r.time_constant_s)), 1.0 / rate
+    told["gain"], told["drag"] = thrust_factor, scenario.uav.drag_nspm
+    told["inflow"], told["slope"] = r.inflow, r.slope
+    told["disc"] = disc_of(r.radius_m, scenario.environment.air_density_kgm3)
+    told["advance"] = advance_of(r.slope, r.inflow_ratio)
+    told["force"], told["moment"] = scenario.disturbance.force_n, scenario.disturbance.torque_nm
+
+
+@njit(cache=True)
+def spin(told: Record, kept: Record, faults: Record, t: Record, applied: Array) -> None:
+    """One tick of the rotors.
+
+    The wrench comes from outside (MuJoCo's `xfrc_applied`), because MuJoCo's force sensors do not see actuators that act at a site.
+
+    Args:
+        told: of `told_layout`.
+        kept: of `kept_layout`, updated.
+        faults: what fails, of `faults.kept_layout`.
+        t: truth of the present tick.
+        applied: (6,) N, N·m, W: wrench on the UAV at its centre of mass, written.
+    """
+    # The truth is one step old; the attitude now is a step of the angular velocity further.
+    turn = np.empty(3)
+    for i in range(3):
+        turn[i] = t.omega[i] * told.tick_s
+    R = matrix(multiply(t.quat, from_rotation_vector(turn)))
+    for k in range(4):
+        kept.due[k] += told.lag * (kept.asked[k] - kept.due[k])
+        kept.static[k] += told.lag * (kept.asked[k] * told.gain[k] * faults.rotor[k] - kept.static[k])
+    _move_through_air(R, t, told, kept)
+    thrust, x, y, z = 0.0, 0.0, 0.0, 0.0
+    for k in range(4):
+        thrust += told.mixer[0, k] * kept.lift[k]
+        x += told.mixer[1, k] * kept.lift[k]
+        y += told.mixer[2, k] * kept.lift[k]
+        z += told.mixer[3, k] * kept.lift[k]
+    x, y, z = x + told.moment[0], y + told.moment[1], z + told.moment[2]
+    for i in range(3):
+        applied[i] = R[i, 2] * thrust + (told.force[i] + faults.force[i])
+        if i < 2:
+            applied[i] -= told.drag * (t.v_cm[i] - told.air[i])
+        applied[3 + i] = faults.torque[i] + R[i, 0] * x + R[i, 1] * y + R[i, 2] * z
+
+
+@njit(cache=True)
+def _move_through_air(R: Array, t: Record, told: Record, kept: Record) -> None:
+    # What each rotor gives of its static thrust, by the velocity of its hub through the air.
+    if not told.inflow:
+        kept.lift = kept.static
+        return
+    x, y, z = 0.0, 0.0, 0.0
+    for i in range(3):
+        v = t.v_cm[i] - told.air[i]
+        x, y, z = x + R[i, 0] * v, y + R[i, 1] * v, z + R[i, 2] * v
+    in_plane = np.sqrt(x * x + y * y)
+    for k in range(4):
+        axial = z + t.omega[0] * told.mixer[1, k] + t.omega[1] * told.mixer[2, k]
+        f = factor_at_speed(kept.static[k], in_plane, axial, told.disc, told.slope, told.advance)
+        kept.lift[k] = kept.static[k] * f

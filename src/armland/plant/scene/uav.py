@@ -1,0 +1,127 @@
+"""The UAV in the scene: hinged on the arm for good, or free with skids, a hanging hinge plate and shapes that can touch.
+
+The UAV's file holds a body `uav` whose origin is its centre of mass, and sites `cm`, `pivot` and `rotor_1` to `rotor_4`.
+"""
+
+import mujoco
+import numpy as np
+
+from armland.errors import ModelError
+from armland.models.description import EE_SITE, frame_names, read_spec, resolve
+from armland.models.parameters import STEEL_KGM3, uav_parameters
+from armland.plant.scene.arm import add_capsule
+from armland.rotations import Array
+from armland.scenario import Scenario
+from armland.scenario.gear import Hinge, Plate, Skids
+
+ROTORS = 4
+
+UAV = "uav/"
+"""Prefix of the UAV's names in the scene."""
+
+PLATE = f"{UAV}plate"
+"""Name of the hinge plate's body and of its geom."""
+
+ON_ARM = ("swivel", "hinge_x", "hinge_y")
+"""Joints of a UAV that is hinged on the arm, from the arm to the UAV: the UAV's attitude in the arm's is Rz Rx Ry of them."""
+
+ON_UAV = ("hinge_y", "hinge_x", "swivel")
+"""Joints of a hanging plate, from the UAV to the plate: the plate's attitude in the UAV's is Ry Rx Rz of them."""
+
+AXES = {"swivel": [0, 0, 1], "hinge_x": [1, 0, 0], "hinge_y": [0, 1, 0]}
+
+FRAME_RADIUS_M = 0.015
+"""Of the two beams that carry the rotors, as far as they can touch."""
+
+
+def uav_spec(scenario: Scenario) -> mujoco.MjSpec:
+    """The UAV's file with the scenario's numbers in place of the file's where it has any, and what the UAV carries.
+
+    Raises:
+        ModelError: a file that cannot be used; the message names what it lacks.
+    """
+    u = scenario.uav
+    spec = read_spec(resolve(u.file), "UAV file")
+    names = frame_names(spec)
+    needed = ["uav", "cm", "pivot", *(f"rotor_{i + 1}" for i in range(ROTORS))]
+    missing = [n for n in needed if n not in names]
+    if missing:
+        raise ModelError(f"UAV file {u.file!r} lacks {', '.join(missing)}; it needs a body 'uav' and the other sites")
+    if u.mass_kg is not None or u.inertia_kgm2 is not None or u.extra_mass_kg > 0.0:
+        _weigh(spec, scenario)
+    if u.lever_m is not None:
+        site(spec, "pivot").pos = site(spec, "cm").pos + np.array(u.lever_m)
+    return spec
+
+
+def _weigh(spec: mujoco.MjSpec, scenario: Scenario) -> None:
+    own, body = uav_parameters(scenario), spec.body("uav")
+    J, body.explicitinertial, body.mass = own.inertia, True, own.mass
+    body.ipos, body.iquat, body.inertia = site(spec, "cm").pos, [1.0, 0.0, 0.0, 0.0], np.zeros(3)
+    body.fullinertia = [J[0, 0], J[1, 1], J[2, 2], J[0, 1], J[0, 2], J[1, 2]]
+
+
+def site(spec: mujoco.MjSpec, name: str) -> mujoco.MjsSite:
+    """The site `name` of a UAV's spec, which has it."""
+    return next(s for s in spec.sites if s.name == name)
+
+
+def hinge_on_arm(spec: mujoco.MjSpec, uav: mujoco.MjSpec, hinge: Hinge) -> None:
+    """Bind the UAV to the arm's end effector by the spherical hinge, its pivot in the end effector point."""
+    body, pivot = uav.body("uav"), site(uav, "pivot").pos.copy()
+    for name in ON_ARM:
+        _add_hinge_joint(body, name, pivot, hinge, uav.compiler.degree)
+    body.pos = -pivot
+    next(s for s in spec.sites if s.name == EE_SITE).attach_body(body, UAV, "")
+
+
+def let_fly(spec: mujoco.MjSpec, uav: mujoco.MjSpec, scenario: Scenario) -> mujoco.MjsBody:
+    """Put the UAV into the scene as a free body with frame shapes, skids and hinge plate; returns its body."""
+    body = uav.body("uav")
+    body.add_freejoint(name="free")
+    rotors = [site(uav, f"rotor_{i + 1}").pos for i in range(ROTORS)]
+    for i in range(2):
+        add_capsule(body, f"frame_{i + 1}", [*rotors[i], *rotors[i + 2]], FRAME_RADIUS_M)
+    _add_skids(body, scenario.skids)
+    _hang_plate(body, site(uav, "pivot").pos.copy(), scenario.plate, scenario.hinge, uav.compiler.degree)
+    return body
+
+
+def _add_hinge_joint(body: mujoco.MjsBody, name: str, pos: Array, hinge: Hinge, degree: bool) -> None:
+    limit = hinge.range_deg if degree else np.deg2rad(hinge.range_deg)
+    body.add_joint(
+        name=name,
+        type=mujoco.mjtJoint.mjJNT_HINGE,
+        pos=pos,
+        axis=AXES[name],
+        limited=name != "swivel",
+        range=[-limit, limit],
+        damping=[hinge.damping_nms, 0, 0],
+        frictionloss=hinge.friction_nm,
+    )
+
+
+def _hang_plate(body: mujoco.MjsBody, pivot: Array, p: Plate, hinge: Hinge, degree: bool) -> None:
+    plate = body.add_body(name="plate", pos=pivot)
+    for name in ON_UAV:
+        _add_hinge_joint(plate, name, np.zeros(3), hinge, degree)
+    cylinder, metal = mujoco.mjtGeom.mjGEOM_CYLINDER, [0.72, 0.74, 0.77, 1]
+    weight = {"density": STEEL_KGM3} if p.mass_kg is None else {"mass": p.mass_kg}
+    # Placed by its middle, not from end to end, which would turn its z axis over: the magnet's gaps are measured along it.
+    middle, size = [0, 0, 0.5 * p.thickness_m - p.drop_m], [p.radius_m, 0.5 * p.thickness_m, 0]
+    plate.add_geom(name="plate", type=cylinder, pos=middle, size=size, rgba=metal, group=2, **weight)
+    stem = [0, 0, p.thickness_m - p.drop_m, 0, 0, 0]
+    plate.add_geom(type=cylinder, fromto=stem, size=[0.005, 0, 0], rgba=metal, group=2, mass=0)
+    plate.add_site(name="hinge")
+    plate.add_site(name="plate", pos=[0, 0, -p.drop_m])
+
+
+def _add_skids(body: mujoco.MjsBody, skids: Skids) -> None:
+    capsule, y, z = mujoco.mjtGeom.mjGEOM_CAPSULE, skids.half_length_m, skids.z_m
+    look = {"group": 2, "mass": 0, "rgba": [0.72, 0.74, 0.77, 1]}
+    for i, x in enumerate((skids.x_m, -skids.x_m)):
+        tube = {"fromto": [x, -y, z, x, y, z], "size": [skids.radius_m, 0, 0]}
+        body.add_geom(name=f"skid_{i + 1}", type=capsule, **tube, **look)
+        for side in (-1, 1):
+            leg = [0.75 * x, side * 0.09, 0.0, x, side * 0.6 * y, z]
+            body.add_geom(type=capsule, fromto=leg, size=[0.6 * skids.radius_m, 0, 0], **look)

@@ -1,0 +1,27 @@
+"""A run as flat columns: what `pandas.DataFrame` takes, one column for each number of each message."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from armland.records import Records
+
+
+def columns(ticks: Records, period_ns: int) -> dict[str, NDArray]:
+    """Columns (k,) by name: `time` in s, then e.g. `mission.phase`, `truth.r.0`, `truth.r.1`, `truth.r.2`; views where possible.
+
+    Args:
+        ticks: (k,) of `records.tick_layout`.
+        period_ns: length of a tick.
+    """
+    found = {"time": ticks["measurement"]["tick"] * (period_ns * 1e-9)}
+    for message in ticks.dtype.names or ():
+        rows = ticks[message]
+        for field in rows.dtype.names or ():
+            values = rows[field]
+            if values.ndim == 1:
+                found[f"{message}.{field}"] = values
+            else:
+                for i in range(int(np.prod(values.shape[1:]))):
+                    index = np.unravel_index(i, values.shape[1:])
+                    found[f"{message}.{field}.{i}"] = values[(slice(None), *map(int, index))]  # type: ignore[arg-type]
+    return found

@@ -1,0 +1,198 @@
+"""A whole scenario: hardware, environment, control, mission, what the controller believes, what fails."""
+
+import json
+import re
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationError, model_validator
+
+from armland.scenario.arm import Arm, Tool
+from armland.scenario.control import Control, Experiment
+from armland.scenario.environment import Disturbance, Environment
+from armland.scenario.estimation import Estimation
+from armland.scenario.faults import Fault
+from armland.scenario.gear import Cradle, Hinge, Magnet, Plate, Skids
+from armland.scenario.mission import Bounds, Limits, Place, Run, Trajectory
+from armland.scenario.quantities import Section, Text
+from armland.scenario.refusal import problems, refusal
+from armland.scenario.sensing import Camera, Imperfections, Sensors
+from armland.scenario.tables import as_json, orderly, update
+from armland.scenario.uav import Link, Onboard, Rotors, Uav
+
+HARDWARE = (
+    "arm",
+    "tool",
+    "hinge",
+    "plate",
+    "magnet",
+    "skids",
+    "cradle",
+    "camera",
+    "uav",
+    "rotors",
+    "onboard",
+    "link",
+    "sensors",
+    "environment",
+)
+"""Sections of which the controller has a belief of its own."""
+
+PLANT_ONLY = ("imperfections", "disturbance", "faults")
+"""Sections that the controller never sees."""
+
+
+def _file_name(value: str) -> str:
+    if not re.fullmatch(r"[A-Za-z0-9_+-][A-Za-z0-9_.+-]{0,59}", value):
+        raise ValueError(
+            "the name becomes part of a file's name: 1 to 60 letters, digits and _ . + -, the first of them no full stop"
+        )
+    return value
+
+
+FileName = Annotated[str, AfterValidator(_file_name)]
+
+
+class Scenario(Section):
+    """A whole scenario. Sections have the same names as the parts that they describe."""
+
+    title: Annotated[str, Field(max_length=200)] = Field("untitled", description="of figures and reports")
+    calibration: Text | None = Field(None, description="file of calibrated values, relative to the scenario's folder")
+    run: Run = Run()
+    arm: Arm = Arm()
+    tool: Tool = Tool()
+    hinge: Hinge = Hinge()
+    plate: Plate = Plate()
+    magnet: Magnet = Magnet()
+    skids: Skids = Skids()
+    cradle: Cradle = Cradle()
+    camera: Camera = Camera()
+    uav: Uav = Uav()
+    rotors: Rotors = Rotors()
+    onboard: Onboard = Onboard()
+    link: Link
+    sensors: Sensors = Sensors()
+    environment: Environment = Environment()
+    imperfections: Imperfections = Imperfections()
+    disturbance: Disturbance = Disturbance()
+    control: Control = Control()
+    estimation: Estimation = Estimation()
+    place: Place = Place()
+    bounds: Bounds = Bounds()
+    limits: Limits = Limits()
+    trajectory: Trajectory | None = Field(None, description="path of the missions that follow one")
+    harder: Trajectory | None = Field(None, description="second path for the comparison of laws")
+    experiments: Annotated[dict[FileName, Experiment], Field(max_length=100)] = Field(
+        default_factory=dict, description="controllers to try; the name of each is part of its results' file names"
+    )
+    faults: Annotated[tuple[Fault, ...], Field(max_length=100)] = Field((), description="what fails in the plant")
+    belief: dict[str, dict[str, Any]] = Field(
+        default_factory=dict,
+        description="what the controller takes for true of the hardware where that differs: tables with the hardware's names",
+    )
+
+    _text: str = PrivateAttr("")
+    _overrides: str = PrivateAttr("")
+    _own: frozenset[str] = PrivateAttr(frozenset())
+
+    @property
+    def text(self) -> str:
+        """The file as it was read."""
+        return self._text
+
+    @property
+    def overrides(self) -> str:
+        """What replaced values of the file, as JSON; empty where nothing did."""
+        return self._overrides
+
+    @property
+    def own(self) -> frozenset[str]:
+        """Dotted paths of the keys that the user set, in the file or beside it; those of a base are not among them."""
+        return self._own
+
+    def replaced(self, changes: dict[str, Any]) -> "Scenario":
+        """The scenario with nested `changes`, checked.
+
+        Raises:
+            ConfigurationError: all that is wrong with the result.
+        """
+        data = json.loads(self.model_dump_json())
+        update(data, json.loads(as_json(orderly(changes, "the changes"))))
+        try:
+            return self._with(Scenario.model_validate_json(json.dumps(data)))
+        except ValidationError as e:
+            raise refusal(e, Scenario, "the scenario as changed") from e
+
+    def with_seed(self, seed: int) -> "Scenario":
+        """The same scenario with another seed.
+
+        Raises:
+            ConfigurationError: a negative seed, or one beyond 2⁶².
+        """
+        return self.replaced({"run": {"seed": seed}})
+
+    def believed(self) -> "Scenario":
+        """What the controller takes for true: the hardware as `belief` has it, and nothing that only the plant has."""
+        return self._with(Scenario.model_validate_json(self._belief()))
+
+    def _belief(self) -> str:
+        data = json.loads(self.model_dump_json(exclude={*PLANT_ONLY, "belief"}))
+        update(data, self.belief)
+        return json.dumps(data)
+
+    def _with(self, other: "Scenario") -> "Scenario":
+        # Another scenario of the same source.
+        other._text, other._overrides, other._own = self._text, self._overrides, self._own
+        return other
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scenario":
+        found = [*_rate_problems(self), *_threshold_problems(self)]
+        known = f"no section of the hardware; those are {', '.join(HARDWARE)}"
+        found += [f"belief.{name}: {known}" for name in self.belief if name not in HARDWARE]
+        if self.belief and not found:
+            try:
+                Scenario.model_validate_json(self._belief())
+            except ValidationError as e:
+                found = [f"belief.{line}" for line in problems(e, Scenario)]
+        if found:
+            raise ValueError("\n".join(found))
+        return self
+
+
+def _rate_problems(s: Scenario) -> list[str]:
+    problems, rate = [], s.run.rate_hz
+    devices = {"onboard.rate_hz": s.onboard.rate_hz, "link.rate_hz": s.link.rate_hz}
+    devices["control.station.rate_hz"] = s.control.station.rate_hz
+    for name, experiment in s.experiments.items():
+        if experiment.onboard is not None:
+            devices[f"experiments.{name}.onboard.rate_hz"] = experiment.onboard.rate_hz
+    for name, device in devices.items():
+        if device > rate or rate % device:
+            divisors = [d for d in range(1, rate + 1) if rate % d == 0]
+            near = ", ".join(map(str, sorted(sorted(divisors, key=lambda d: abs(d - device))[:3])))
+            problems.append(f"{name} = {device} does not divide run.rate_hz = {rate}; nearest that do: {near}")
+    low, high = 4.0 * s.rotors.min_thrust_n, 4.0 * s.rotors.max_thrust_n
+    if s.trajectory is not None and not low <= s.control.thrust_n <= high:
+        problems.append(
+            f"control.thrust_n = {s.control.thrust_n:g} N is beyond the four rotors, which give {low:g} to {high:g} N"
+        )
+    return problems
+
+
+def _threshold_problems(s: Scenario) -> list[str]:
+    problems, b, p, carried = [], s.bounds, s.place, 1.0 - s.control.thrust.carry_share
+    if b.lost_offset_m <= b.align_offset_m:
+        problems.append(
+            f"bounds.lost_offset_m = {b.lost_offset_m:g} must exceed bounds.align_offset_m = {b.align_offset_m:g}: "
+            "closing would be given up where it begins"
+        )
+    if b.pull_seen_n >= b.pull_test_n:
+        problems.append(f"bounds.pull_seen_n = {b.pull_seen_n:g} must be below bounds.pull_test_n = {b.pull_test_n:g}")
+    if b.share_carried >= carried:
+        problems.append(
+            f"bounds.share_carried = {b.share_carried:g} must be below 1 - control.thrust.carry_share = {carried:g}: "
+            "the rotors carry the rest"
+        )
+    if p.standoff_m >= p.wait_below_m:
+        problems.append(f"place.standoff_m = {p.standoff_m:g} must be below place.wait_below_m = {p.wait_below_m:g}")
+    return problems

@@ -1,0 +1,53 @@
+"""What all tables share: how they look, and how a verdict reads."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+UNBOUNDED = 1e9
+"""An upper bound from here on is none; JSON knows no infinity."""
+
+
+def terminal() -> Console:
+    """Standard output."""
+    return Console(highlight=False)
+
+
+def titled(title: str, *columns: str, left: Sequence[int] = (0,)) -> Table:
+    """A table without rows; columns hold numbers, to the right, where they are not in `left`."""
+    table = Table(title=title, title_justify="left")
+    for k, column in enumerate(columns):
+        table.add_column(Text(column), justify="left" if k in left else "right")
+    return table
+
+
+def mark(holds: bool) -> str:
+    """Whether a bound is kept, in colour."""
+    return "[green]holds[/]" if holds else "[red]fails[/]"
+
+
+def cell(value: float | Sequence[float] | None, scale: float, form: str) -> str:
+    """A number times `scale`, or several with slashes between them, or a dash where there is none."""
+    if value is None:
+        return "-"
+    values = value if isinstance(value, Sequence) else [value]
+    return "/".join(form.format(scale * v) for v in values)
+
+
+def verdict_table(title: str, verdicts: Sequence[Mapping[str, Any]]) -> Table:
+    """Claims, what was found, the bound, and whether it holds."""
+    table = titled(title, "claim", "found", "bound", "", left=(0, 3))
+    for v in verdicts:
+        low, high = v["bound"]
+        bound = (
+            f"at least {low:.4g}"
+            if high >= UNBOUNDED
+            else f"at most {high:.4g}"
+            if low == 0.0
+            else f"{low:.4g} to {high:.4g}"
+        )
+        table.add_row(Text(v["claim"]), f"{v['value']:.4g}", bound, mark(v["holds"]))
+    return table

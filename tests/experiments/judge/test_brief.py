@@ -1,0 +1,29 @@
+"""What the judge is told, from a log's metadata."""
+
+import numpy as np
+import pytest
+
+from armland.errors import LogError
+from armland.experiments.judge.brief import brief_of
+
+
+def test_brief_is_what_the_metadata_says(brief):
+    assert (brief.mission, brief.start, brief.rate_hz, brief.judged_as) == ("landing", "air", 1000, "landing")
+    assert brief.finals == {"done", "abort", "holding"}
+    np.testing.assert_array_equal(brief.put_down, [0.68, 0.0, 0.701])
+    assert brief.criteria[0].bound == 0.15
+    assert brief.limits["q_max"].shape == (7,)
+
+
+def test_legs_are_read_with_their_points(metadata):
+    leg = '{"start_s": 1.0, "arrive_s": 2.0, "end_s": 3.0, "origin": [0.0, 0.0, 0.0], "target": [0.1, 0.0, 0.0]}'
+    (found,) = brief_of({**metadata, "legs": f"[{leg}]"}).legs
+    np.testing.assert_array_equal(found.target - found.origin, [0.1, 0.0, 0.0])
+
+
+def test_metadata_that_says_too_little_or_nonsense_is_refused(metadata):
+    with pytest.raises(LogError, match="damaged"):
+        brief_of({**metadata, "limits": "[1"})
+    del metadata["criteria"]
+    with pytest.raises(LogError, match="no 'criteria'"):
+        brief_of(metadata)

@@ -1,0 +1,55 @@
+"""Keys without effect and speeds of another arm are refused by their path."""
+
+import numpy as np
+import pytest
+
+from armland.errors import ConfigurationError
+from armland.mission.feasibility.keys import check_keys, joint_speeds
+from armland.mission.plan import plan
+from armland.mission.registry import MISSIONS
+from armland.scenario import load_scenario
+
+
+def test_keys_that_a_landing_does_not_use_are_refused_with_what_it_does_use(tmp_path):
+    file = tmp_path / "ignored.toml"
+    file.write_text('base = "landing"\n[control]\nk3 = 30.0\n[place]\nfly_on = true\n')
+    with pytest.raises(ConfigurationError) as refusal:
+        plan(load_scenario(file), "landing")
+    text = str(refusal.value)
+    assert "control.k3: not used by the mission 'landing'" in text
+    assert "place.fly_on" in text
+    assert "position_rad_s" in text
+
+
+def test_former_names_of_unused_keys_are_refused_by_their_present_path(tmp_path):
+    file = tmp_path / "former.toml"
+    file.write_text('base = "paper"\n[place]\ncatch_m = [0.62, 0.0, 0.86]\n[demonstrator.control]\nk3 = 30.0\n')
+    with pytest.raises(ConfigurationError, match=r"control\.k3: not used"):
+        plan(load_scenario(file), "landing")
+
+
+def test_belief_is_used_where_its_subject_is():
+    check_keys(frozenset({"belief.uav.mass_kg"}), MISSIONS["landing"])
+    with pytest.raises(ConfigurationError, match=r"belief\.wings"):
+        check_keys(frozenset({"belief.wings.span_m"}), MISSIONS["landing"])
+
+
+@pytest.mark.parametrize("name", MISSIONS)
+def test_scenarios_that_come_with_armland_are_used_in_all_they_say(name):
+    for file in ("paper", "compare") if MISSIONS[name].start == "hinged" else ("landing",):
+        check_keys(load_scenario(file).own, MISSIONS[name])
+
+
+def test_prefix_of_a_key_is_a_whole_table_and_no_part_of_a_word():
+    with pytest.raises(ConfigurationError, match="runner"):
+        check_keys(frozenset({"runner"}), MISSIONS["landing"])
+    check_keys(frozenset({"run.seed"}), MISSIONS["landing"])
+
+
+def test_speeds_of_another_number_of_joints_are_refused_only_if_somebody_wrote_them(landing_plan):
+    one = load_scenario("landing", {"arm": {"joint_speed_rad_s": [1.0]}})
+    with pytest.raises(ConfigurationError, match=r"arm\.joint_speed_rad_s has 1 value; the arm has 7 joints: A1"):
+        joint_speeds(one, one.own, landing_plan.arm)
+    default = load_scenario("landing")
+    np.testing.assert_array_equal(joint_speeds(default, default.own, landing_plan.arm), default.arm.joint_speed_rad_s)
+    assert len(joint_speeds(one, frozenset(), landing_plan.arm)) == 7

@@ -1,0 +1,31 @@
+"""The landing's phases in the order of their guards, and its retries."""
+
+import pytest
+
+from armland.mission.registry import MISSIONS
+from armland.scenario import load_scenario
+
+
+@pytest.fixture(scope="module")
+def phases():
+    return {p.name: p for p in MISSIONS["landing"].phases(load_scenario("landing"))}
+
+
+def test_first_guards_lead_from_the_self_test_to_the_goal(phases):
+    here, way = "self_test", []
+    while not phases[here].final:
+        way.append(here)
+        here = next(g.target for g in phases[here].guards if g.target not in ("miss", "abort"))
+    assert here == "done"
+    assert way == [n for n in phases if n != "miss" and not phases[n].final]
+
+
+def test_magnet_is_on_from_the_closing_to_the_release(phases):
+    on = [n for n, p in phases.items() if p.magnet == "on" and not p.final]
+    assert on == ["close", "capture", "hand_over", "carry", "set_down", "unload"]
+
+
+def test_capture_that_is_missed_is_tried_again_until_it_has_been_too_often(phases):
+    targets = [g.target for g in phases["miss"].guards]
+    assert targets == ["abort", "guide"]
+    assert phases["miss"].guards[0].conditions[0].threshold == "retries_allowed"

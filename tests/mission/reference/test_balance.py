@@ -1,0 +1,107 @@
+"""The pivot under a UAV without thrust: against an inverted pendulum, with the delay of its attitude, and near the rails."""
+
+import numpy as np
+import pytest
+
+from armland.mission.reference.balance import BALANCED, GIVEN_UP, SETTLED, begin_balance, refer_balance
+from armland.mission.reference.moves import BALANCE, move
+from armland.rotations import from_rotation_vector
+
+DT = 1e-3
+
+
+class Pendulum:
+    """Two inverted pendulums on the pivot that the reference moves, seen `late` ticks late and carried on by their rates."""
+
+    def __init__(self, bench, lean, late, height=0.8):
+        self.bench, self.late, self.claimed = bench, late, late
+        self.told, self.kept, self.e, self.r = bench.told["refer"], bench.kept["refer"], bench.e, bench.tick.reference
+        self.rate = self.told["balance"]["fall_rate"][0]
+        self.theta, self.theta_dot, self.now = np.array(lean), np.zeros(2), 0
+        self.past = [(self.theta.copy(), self.theta_dot.copy())] * (late + 1)
+        self.e["r"], self.e["v"] = [0.6, 0.0, height], 0.0
+        self.kept["r0"], self.kept["v0"] = self.e["r"], 0.0
+        begin_balance(self.e[0], self.told["balance"][0], self.kept["balance"][0])
+
+    def run(self, seconds):
+        for _ in range(round(seconds / DT)):
+            k, self.now = self.now, self.now + 1
+            theta, theta_dot = self.past[-1 - self.late]
+            seen = theta + theta_dot * self.late * DT
+            # θ is the horizontal part of the body's z axis: towards x it turns about +y, towards y about −x.
+            self.e["quat"][0] = from_rotation_vector(np.array([-seen[1], seen[0], 0.0]))
+            self.e["omega"], self.e["tick"] = [-theta_dot[1], theta_dot[0], 0.0], 1000 + k
+            move(BALANCE, k * DT, 0.0, 0, self.e[0], self.told[0], self.kept[0], self.r[0])
+            refer_balance(k * DT, self.claimed, self.e[0], self.told[0], self.kept[0], self.r[0])
+            push = self.kept["balance"]["sway_a"][0]
+            self.theta_dot = self.theta_dot + self.rate**2 * (self.theta - push / 9.81) * DT
+            self.theta = self.theta + self.theta_dot * DT
+            self.past.append((self.theta, self.theta_dot))
+        return np.abs(self.theta).max()
+
+
+@pytest.mark.parametrize("late", [0, 20])
+def test_leaning_uav_is_righted_and_the_pivot_brought_back(bench, late):
+    pendulum = Pendulum(bench, [0.03, -0.02], late)
+    assert pendulum.run(3.0) < 1e-3
+    np.testing.assert_allclose(pendulum.kept["balance"]["sway"][0], 0.0, atol=5e-3)
+
+
+def test_without_a_push_it_falls(bench):
+    pendulum = Pendulum(bench, [0.03, -0.02], 0)
+    bench.told["refer"]["balance"]["gains"] = 0.0
+    assert pendulum.run(1.0) > 0.5
+
+
+def test_delay_that_is_not_reckoned_with_is_worse(bench):
+    """(B.5): what the pivot did since the attitude was taken belongs to the present tilt."""
+    reckoned = Pendulum(bench, [0.03, -0.02], 45)
+    known = max(reckoned.run(0.05) for _ in range(40))
+    blind = Pendulum(bench, [0.03, -0.02], 45)
+    blind.claimed = 0
+    assert known < 0.1
+    assert max(blind.run(0.05) for _ in range(40)) > 2.0 * known
+
+
+def test_pivot_stays_within_its_reach_and_its_strength(bench):
+    pendulum = Pendulum(bench, [0.12, 0.0], 0)
+    b = bench.told["refer"]["balance"]
+    for _ in range(300):
+        pendulum.run(DT)
+        assert abs(pendulum.kept["balance"]["sway_a"][0]).max() <= b["push_max"][0] + 1e-9
+        assert abs(pendulum.kept["balance"]["sway"][0]).max() <= b["sway_max"][0] * 1.05
+
+
+def test_reference_is_consistent_and_sinks_on_the_wrists_circle(bench):
+    pendulum = Pendulum(bench, [0.05, 0.0], 0)
+    heights, rows = [], []
+    for _ in range(200):
+        pendulum.run(DT)
+        rows.append(np.concatenate([pendulum.r["r"][0], pendulum.r["v"][0]]))
+        heights.append(pendulum.r["r"][0, 2])
+    rows = np.array(rows)
+    rate = (rows[2:, 0] - rows[:-2, 0]) / (2.0 * DT)
+    np.testing.assert_allclose(rate, rows[1:-1, 3], atol=2e-2)
+    lean, wrist = pendulum.kept["balance"]["lean"][0], bench.told["refer"]["balance"]["wrist"][0]
+    assert 0.8 - heights[-1] == pytest.approx(0.5 * wrist * (lean @ lean), rel=1e-6)
+    # The tool leans towards where the pivot goes, the wrist making most of the displacement.
+    sway, swing = pendulum.kept["balance"]["sway"][0, 0], bench.told["refer"]["balance"]["swing"][0]
+    assert lean[1] * wrist == pytest.approx(swing * sway)
+
+
+def test_near_the_rails_it_is_set_down_and_pressed_on(bench):
+    down = bench.told["refer"]["balance"]["down"][0]
+    pendulum = Pendulum(bench, [0.02, 0.0], 0, height=down + 0.02)
+    assert pendulum.kept["balance"]["state"][0] == SETTLED
+    pendulum.run(1.0)
+    assert pendulum.r["r"][0, 2] < down
+    assert pendulum.r["v"][0, 2] == pytest.approx(0.0, abs=1e-9)
+    assert Pendulum(bench, [0.02, 0.0], 0, height=down + 0.1).kept["balance"]["state"][0] == BALANCED
+
+
+def test_uav_that_cannot_be_balanced_is_given_up_and_the_arm_comes_to_rest(bench):
+    pendulum = Pendulum(bench, [1.5 * bench.told["refer"]["balance"]["lost"][0], 0.0], 0)
+    bench.kept["refer"]["balance"]["sway_v"] = 0.3
+    pendulum.run(0.5)
+    assert pendulum.kept["balance"]["state"][0] == GIVEN_UP
+    assert np.abs(pendulum.kept["balance"]["sway_v"]).max() < 1e-3

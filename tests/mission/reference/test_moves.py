@@ -1,0 +1,128 @@
+"""The arm's references: without jumps, each the rate of the one before it, ending where the phase says."""
+
+import numpy as np
+import pytest
+
+from armland.mission.reference.moves import BACK_OFF, CLOSE, HOLD, JOIN, LAUNCH, LEAVE, MOVE, TRACK, YIELD, begin, move
+from armland.mission.reference.refer import kept_layout, told_layout
+from armland.records import layout
+
+ALL = [HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, LAUNCH, LEAVE]
+
+
+@pytest.fixture
+def made():
+    """What the reference is told and keeps, an estimate and an empty reference."""
+    p, s = np.zeros(1, told_layout()), np.zeros(1, kept_layout())
+    p["tick_s"], p["coast"], p["standoff"], p["beyond"], p["depth"] = 1e-3, 0.06, 0.03, 0.006, 0.06
+    p["targets"][0, 1] = [0.7, 0.1, 0.8]
+    p["launch"], p["launch_s"], p["leave_s"] = [0.5, -0.2, 0.1], 0.6, 0.35
+    p["give_way"], p["give_way_max"] = 3e-3, 4e-3
+    s["r0"], s["v0"] = [0.6, 0.0, 0.7], [0.05, -0.02, 0.1]
+    s["p"], s["pv"] = [0.62, 0.01, 0.86], [0.02, 0.01, -0.01]
+    return p, s, np.zeros(1, layout("estimate", 7)), np.zeros(1, layout("reference", 7))
+
+
+def at(made, mode, t, duration=1.5):
+    """Position, velocity, acceleration and progress `t` s into a phase; the plate moves on at its own speed."""
+    p, s, e, r = made
+    s, r = s.copy(), r.copy()
+    s["p"] += (t - 0.7) * s["pv"]
+    progress = move(mode, t, duration, 1, e[0], p[0], s[0], r[0])
+    return r["r"][0], r["v"][0], r["a"][0], progress
+
+
+@pytest.mark.parametrize("mode", ALL)
+def test_velocity_and_acceleration_are_the_rates_of_what_comes_before(made, mode):
+    h = 1e-5
+    for t in (0.1, 0.7, 1.3):
+        ahead, here, behind = at(made, mode, t + h), at(made, mode, t), at(made, mode, t - h)
+        np.testing.assert_allclose((ahead[0] - behind[0]) / (2.0 * h), here[1], atol=1e-5)
+        np.testing.assert_allclose((ahead[1] - behind[1]) / (2.0 * h), here[2], atol=1e-4)
+
+
+@pytest.mark.parametrize("mode", [JOIN, CLOSE, MOVE, BACK_OFF, LAUNCH, LEAVE])
+def test_jerk_does_not_step_within_a_phase(made, mode):
+    """C³: no jump of the third derivative beyond what the fourth makes of a step of time; the plate at rest."""
+    made[1]["pv"] = 0.0
+    h = 1e-3
+    t = np.arange(0.05, 1.6, h)
+    a = np.array([at(made, mode, x)[2] for x in t])
+    jerk = np.diff(a, axis=0) / h
+    # The snap of a septic is at most 840 d/T⁴; here d < 0.6 m and T > 0.35 s for the fastest axis.
+    assert np.abs(np.diff(jerk, axis=0)).max() < 840.0 * 0.06 / 0.35**4 * h * 2.0 + 5e-2
+
+
+@pytest.mark.parametrize("mode", [HOLD, MOVE, BACK_OFF, YIELD, LAUNCH, LEAVE])
+def test_reference_begins_where_the_last_one_was_at_its_speed(made, mode):
+    r, v, _, _ = at(made, mode, 0.0)
+    np.testing.assert_allclose(r, made[1]["r0"][0])
+    np.testing.assert_allclose(v, made[1]["v0"][0])
+
+
+def test_arm_that_holds_comes_to_rest_within_a_few_coasting_times(made):
+    r, v, _, _ = at(made, HOLD, 1.0)
+    np.testing.assert_allclose(v, 0.0, atol=1e-6)
+    np.testing.assert_allclose(r, made[1]["r0"][0] + 0.06 * made[1]["v0"][0], atol=1e-7)
+
+
+def test_move_ends_at_its_target(made):
+    r, v, _, progress = at(made, MOVE, 1.5)
+    np.testing.assert_allclose(r, [0.7, 0.1, 0.8], atol=1e-9)
+    np.testing.assert_allclose(v, 0.0, atol=1e-9)
+    assert progress == 1.0
+
+
+def test_joining_ends_on_the_plates_motion_below_it(made):
+    s = made[1]
+    r, v, _, _ = at(made, JOIN, 1.5)
+    np.testing.assert_allclose(r, s["p"][0] + 0.8 * s["pv"][0] - [0, 0, 0.03], atol=1e-12)
+    np.testing.assert_allclose(v, s["pv"][0], atol=1e-12)
+
+
+def test_closing_begins_at_the_standoff_and_ends_beyond_the_face(made):
+    made[1]["pv"] = 0.0
+    assert at(made, CLOSE, 0.0, 1.0)[0][2] == pytest.approx(0.83)
+    assert at(made, CLOSE, 1.0, 1.0)[0][2] == pytest.approx(0.866)
+
+
+def test_backing_off_goes_down_by_the_depth(made):
+    made[1]["v0"] = 0.0
+    np.testing.assert_allclose(at(made, BACK_OFF, 1.5)[0] - made[1]["r0"][0], [0.0, 0.0, -0.06], atol=1e-12)
+
+
+def test_arm_gives_way_to_where_the_hinge_pushes_and_no_further_than_its_bound(made):
+    p, s, e, r = made
+    s["v0"] = 0.0
+    e["hinge_force"][0] = [2.0, 0.0, -1.0]
+    for _ in range(100):
+        move(YIELD, 0.1, 0.0, 1, e[0], p[0], s[0], r[0])
+    # The force of the end effector on the UAV is opposite to what pushes the arm.
+    np.testing.assert_allclose(s["yielded"][0], [-100 * 1e-3 * 3e-3 * 2.0, 0.0, 100 * 1e-3 * 3e-3], rtol=1e-9)
+    for _ in range(5000):
+        move(YIELD, 0.1, 0.0, 1, e[0], p[0], s[0], r[0])
+    np.testing.assert_allclose(r["r"][0] - s["r0"][0], [-4e-3, 0.0, 4e-3], rtol=1e-9)
+
+
+def test_phase_begins_where_the_last_reference_was(made):
+    _, s, e, _ = made
+    s["r"], s["v"], e["r"], e["v"] = 0.5, 0.1, 0.4, 0.2
+    begin(MOVE, HOLD, False, e[0], s[0])
+    np.testing.assert_array_equal([s["r0"][0], s["v0"][0]], [[0.5] * 3, [0.1] * 3])
+
+
+@pytest.mark.parametrize(("mode", "switched", "speed"), [(YIELD, False, 0.0), (HOLD, True, 0.2)])
+def test_phase_begins_where_the_arm_is_if_the_law_changes_or_it_gives_way(made, mode, switched, speed):
+    """So the new law begins without a force."""
+    _, s, e, _ = made
+    s["r"], s["v"], s["yielded"], e["r"], e["v"] = 0.5, 0.1, 0.003, 0.4, 0.2
+    begin(mode, HOLD, switched, e[0], s[0])
+    np.testing.assert_array_equal([s["r0"][0], s["v0"][0]], [[0.4] * 3, [speed] * 3])
+
+
+def test_arm_that_goes_on_giving_way_keeps_what_it_has_given(made):
+    _, s, e, _ = made
+    s["r"], s["yielded"] = 0.5, 0.003
+    begin(YIELD, YIELD, False, e[0], s[0])
+    np.testing.assert_allclose(s["r0"][0], 0.497)
+    np.testing.assert_array_equal(s["yielded"][0], 0.003)

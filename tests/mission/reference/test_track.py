@@ -1,0 +1,63 @@
+"""The filter on the plate's motion: follows, limits, and comes to rest where nobody vouches for the plate."""
+
+import numpy as np
+import pytest
+
+from armland.mission.reference.refer import kept_layout, told_layout
+from armland.mission.reference.track import begin_track, track
+from armland.records import layout
+
+RATE, TICK_S = 12.0, 1e-3
+
+
+@pytest.fixture
+def made():
+    p, s, e = np.zeros(1, told_layout()), np.zeros(1, kept_layout()), np.zeros(1, layout("estimate", 7))
+    p["tick_s"], p["track"], p["track_max"] = TICK_S, RATE, 3.0
+    e["plate"], e["plate_valid"] = [0.62, 0.01, 0.86], 1
+    begin_track(e[0], s[0])
+    return p, s, e
+
+
+def run(made, ticks):
+    p, s, e = made
+    for _ in range(ticks):
+        track(e[0], p[0], s[0])
+    return s["p"][0]
+
+
+@pytest.mark.parametrize(("valid", "far"), [(1, 0.3), (0, 0.02 / (2.0 * RATE))])
+def test_plate_is_followed_only_while_somebody_vouches_for_it(made, valid, far):
+    _, s, e = made
+    s["pv"][0, 0], e["plate_valid"] = 0.02, valid
+    e["plate"][0, 0] += 0.3
+    start = s["p"].copy()
+    assert run(made, 3000)[0] - start[0, 0] == pytest.approx(far, abs=1e-3)
+    assert np.abs(s["pv"]).max() < 1e-3
+
+
+def test_small_step_is_followed_by_a_double_pole(made):
+    """x(t) = 1 − (1 + λt) e^(−λt), as long as no acceleration is limited."""
+    _, s, e = made
+    e["plate"][0, 1] += 0.01
+    for t in (0.05, 0.1, 0.2):
+        before = s.copy()
+        x = run(made, round(t / TICK_S))[1] - 0.01
+        assert x == pytest.approx(0.01 * (1.0 - (1.0 + RATE * t) * np.exp(-RATE * t)), rel=0.03)
+        s[:] = before
+
+
+def test_plate_that_moves_evenly_is_followed_without_lag(made):
+    p, s, e = made
+    e["plate_v"] = 0.1
+    for _ in range(2000):
+        e["plate"] += 0.1 * TICK_S
+        track(e[0], p[0], s[0])
+    np.testing.assert_allclose(s["p"][0], e["plate"][0], atol=2e-4)
+
+
+def test_acceleration_is_fed_forward_and_limited(made):
+    _, s, e = made
+    e["plate_a"][0] = [1.0, 10.0, -10.0]
+    run(made, 1)
+    np.testing.assert_allclose(s["pa"][0], [1.0, 3.0, -3.0])

@@ -1,0 +1,69 @@
+"""The estimate of a tick: arm point, thrust that acts, torque on board, and which parts are filled by which device."""
+
+import numpy as np
+import pytest
+
+from armland.mission.estimate import SINGULARITY_PERIOD, acting_thrust, estimate, estimate_arm, predict_torque, screen
+from armland.rotations import from_rotation_vector
+
+
+def test_velocity_of_the_end_effector_is_the_rate_of_its_position(bench, landing_plan):
+    arm, h = landing_plan.arm, 1e-6
+    rng = np.random.default_rng(1)
+    q, qd = landing_plan.home + rng.normal(scale=0.05, size=7), rng.normal(scale=0.3, size=7)
+    places = []
+    for shift in (-h, h, 0.0):
+        arm.update(q + shift * qd, qd)
+        places.append(arm.position.copy())
+    bench.m["qd"] = qd
+    estimate_arm(bench.m[0], arm.state[0], bench.e[0])
+    np.testing.assert_array_equal(bench.e["r"][0], places[2])
+    np.testing.assert_allclose(bench.e["v"][0], (places[1] - places[0]) / (2.0 * h), atol=1e-8)
+
+
+@pytest.mark.parametrize(("fused", "valid"), [(0, 1), (1, 0)])
+def test_attitude_is_as_received_or_by_the_filter_which_vouches_for_nothing_unseen(bench, fused, valid):
+    bench.told["estimate"]["fused"], bench.kept["estimate"]["seen"] = fused, 0
+    bench.m["uav_quat"][0] = from_rotation_vector(np.array([0.1, 0.0, 0.0]))
+    bench.kept["estimate"]["filter"]["align"]["quat"][0, 0] = 1.0
+    estimate(bench.b)
+    np.testing.assert_allclose(bench.e["quat"][0], bench.m["uav_quat"][0], atol=1e-12)
+    assert bench.e["plate_valid"][0] == valid
+    assert bench.kept["estimate"]["seen"][0] == valid
+
+
+def test_smallest_singular_value_is_evaluated_now_and_then(bench):
+    bench.kept["estimate"]["sigma"], bench.m["tick"] = -1.0, SINGULARITY_PERIOD * 50 + 1
+    estimate(bench.b)
+    assert bench.kept["estimate"]["sigma"][0] == -1.0
+    bench.m["tick"] = SINGULARITY_PERIOD * 51
+    estimate(bench.b)
+    found = np.linalg.svd(bench.board["arm"]["jacobian"][0], compute_uv=False)[-1]
+    assert bench.kept["estimate"]["sigma"][0] == pytest.approx(found)
+
+
+def test_screening_looks_for_leaps_of_a_held_uav(bench):
+    screen(bench.b)
+    assert bench.kept["estimate"]["bad"][0] == 0
+    bench.m["uav_quat"][0] = from_rotation_vector(np.array([0.5, 0.0, 0.0]))
+    bench.kept["decide"]["held"] = 1
+    screen(bench.b)
+    assert bench.kept["estimate"]["bad"][0] == 4
+
+
+def test_thrust_that_acts_is_late_by_link_and_rotors(bench):
+    p, s = bench.told["estimate"], bench.kept["estimate"]
+    s["thrust_log"], s["acting"] = 5.0, 5.0
+    lag = bench.plan.scenario.link.uplink_delay_ms * 1e-3 + bench.plan.scenario.rotors.time_constant_s
+    for tick in range(600):
+        s["thrust_log"][0, tick % 256] = 5.0 - 3.0 * tick * 1e-3
+        acting = acting_thrust(tick, p[0], s[0])
+    assert acting == pytest.approx(5.0 - 3.0 * (0.599 - lag), abs=0.02)
+
+
+def test_torque_on_board_turns_the_uav_back_to_its_set_point(bench):
+    p, q_d = bench.told["estimate"], np.array([1.0, 0.0, 0.0, 0.0])
+    bench.e["quat"][0], bench.e["omega"] = from_rotation_vector(np.array([0.01, -0.02, 0.03])), [0.1, 0.2, 0.3]
+    predict_torque(q_d, p[0], bench.e[0])
+    kp, kd = np.array(bench.plan.scenario.onboard.kp_nm), np.array(bench.plan.scenario.onboard.kd_nms)
+    np.testing.assert_allclose(bench.e["tau_att"][0], -kp * [0.01, -0.02, 0.03] - kd * [0.1, 0.2, 0.3], rtol=1e-3)

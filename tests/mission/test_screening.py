@@ -1,0 +1,95 @@
+"""Samples that cannot be used: replaced by the last good ones, and their device's clock stands still."""
+
+import numpy as np
+import pytest
+
+from armland.mission.screening import screened
+from armland.records import layout
+from armland.rotations import from_rotation_vector
+
+LEAP, ATTITUDE_LEAP = 0.05, 0.15
+
+
+def screen(m, good, held=False, joint_leap=LEAP, attitude_leap=ATTITUDE_LEAP):
+    return screened(m[0], good[0], held, joint_leap, attitude_leap, 1e-3)
+
+
+def measurement(tick=100):
+    m = np.zeros(1, layout("measurement", 7))
+    m["uav_quat"][0, 0] = 1.0
+    for name in ("tick", "arm_tick", "wrench_tick", "uav_tick"):
+        m[name] = tick
+    return m
+
+
+@pytest.mark.parametrize(
+    ("field", "clock"), [("q", "arm_tick"), ("qd", "arm_tick"), ("wrench", "wrench_tick"), ("uav_rate", "uav_tick")]
+)
+def test_sample_that_is_no_number_keeps_the_last_one_and_stops_its_clock_alone(field, clock):
+    good, m = np.zeros(1, layout("measurement", 7)), measurement()
+    m[field] = 0.01
+    assert screen(m, good) == 0
+    m = measurement(101)
+    m[field][0, 1] = np.nan
+    assert screen(m, good) == 1
+    assert m[field][0, 1] == 0.01
+    for name in ("arm_tick", "wrench_tick", "uav_tick"):
+        assert m[name][0] == (100 if name == clock else 101)
+
+
+@pytest.mark.parametrize(("step", "bad"), [(0.5 * LEAP, 0), (2.0 * LEAP, 1), (-2.0 * LEAP, 1)])
+def test_joint_that_leaps_is_not_believed(step, bad):
+    good, m = np.zeros(1, layout("measurement", 7)), measurement()
+    m["q"] = 1.0
+    assert screen(m, good) == 0
+    m = measurement(101)
+    m["q"] = 1.0
+    m["q"][0, 3] += step
+    assert screen(m, good) == bad
+    assert m["q"][0, 3] == (1.0 if bad else 1.0 + step)
+    assert m["arm_tick"][0] == (100 if bad else 101)
+
+
+@pytest.mark.parametrize(
+    ("held", "turn", "rate", "believed"),
+    [(True, 0.8, 0.0, False), (False, 0.8, 0.0, True), (True, 0.05, 0.0, True), (True, 0.8, 100.0, True)],
+)
+def test_attitude_that_leaps_is_not_believed_of_a_uav_that_is_held(held, turn, rate, believed):
+    good, m = np.zeros(1, layout("measurement", 7)), measurement()
+    assert screen(m, good) == 0
+    # It stays there: a sample that was not believed does not become true by being repeated.
+    for tick in (105, 110, 115):
+        m = measurement(tick)
+        m["uav_quat"][0], m["uav_rate"][0, 0] = from_rotation_vector(np.array([turn, 0.0, 0.0])), rate
+        screen(m, good, held)
+        assert (m["uav_tick"][0] == tick) == believed
+        assert (m["uav_quat"][0, 1] > 0.0) == believed
+
+
+def test_leaps_do_not_matter_where_nobody_looks_for_them():
+    good, m = np.zeros(1, layout("measurement", 7)), measurement()
+    assert screen(m, good) == 0
+    m = measurement(101)
+    m["q"], m["uav_quat"][0] = 2.0, from_rotation_vector(np.array([2.0, 0.0, 0.0]))
+    assert screen(m, good, True, np.inf, np.inf) == 0
+    assert m["uav_tick"][0] == 101
+
+
+@pytest.mark.parametrize("field", ["camera_position", "camera_quat"])
+def test_image_that_is_no_number_has_not_arrived(field):
+    good, m = np.zeros(1, layout("measurement", 7)), measurement()
+    m["camera_fresh"] = 1
+    assert screen(m, good) == 0
+    assert m["camera_fresh"][0] == 1
+    m[field][0, 1] = np.nan
+    assert screen(m, good) == 1
+    assert m["camera_fresh"][0] == 0
+
+
+def test_first_sample_that_is_no_number_becomes_a_finite_one():
+    good, m = np.zeros(1, layout("measurement", 7)), measurement()
+    good["uav_quat"][0, 0] = 1.0
+    m["q"], m["uav_quat"] = np.nan, np.inf
+    assert screen(m, good) == 11
+    np.testing.assert_array_equal(m["q"], 0.0)
+    np.testing.assert_array_equal(m["uav_quat"][0], [1.0, 0.0, 0.0, 0.0])

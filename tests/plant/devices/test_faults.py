@@ -1,0 +1,174 @@
+"""Faults act when they should and only then, on what they should and on nothing else."""
+
+import numpy as np
+import pytest
+
+from armland.errors import ConfigurationError
+from armland.rotations import angle, conjugate, multiply
+from armland.scenario.faults import FAILURES, SHAPES
+
+
+@pytest.mark.parametrize(
+    ("kind", "clock"),
+    [
+        ("downlink_loss", "uav_tick"),
+        ("arm_stale", "arm_tick"),
+        ("wrench_frozen", "wrench_tick"),
+        ("camera_lost", "camera_capture"),
+    ],
+)
+def test_fault_stops_the_clock_of_its_device_alone(waiting, kind, clock):
+    m = waiting(faults=[{"kind": kind, "after_s": 0.3}]).step(1000)["measurement"][-1]
+    for name in ("uav_tick", "arm_tick", "wrench_tick", "camera_capture"):
+        assert (m["tick"] - m[name] > 600) == (name == clock)
+
+
+def test_clocks_of_healthy_devices_say_how_old_a_sample_is(waiting):
+    m = waiting().step(500)["measurement"][-1]
+    assert m["tick"] == m["arm_tick"] == m["wrench_tick"] == 499
+    assert 12 <= m["tick"] - m["uav_tick"] <= 17
+    assert 50 <= m["tick"] - m["camera_capture"] <= 110
+
+
+def test_uplink_loss_leaves_the_downlink(waiting):
+    m = waiting(faults=[{"kind": "uplink_loss", "after_s": 0.3}]).step(1000)["measurement"][-1]
+    assert 290 <= m["uav_heard"] <= 330
+    assert m["tick"] - m["uav_tick"] < 20
+
+
+def test_frozen_camera_keeps_its_clock_and_repeats_its_image(waiting):
+    led = waiting(faults=[{"kind": "camera_frozen", "after_s": 0.5}])
+    first = led.step(900)["measurement"]["camera_position"][-1]
+    m = led.step(300)["measurement"][-1]
+    assert m["tick"] - m["camera_capture"] < 120
+    np.testing.assert_array_equal(m["camera_position"], first)
+
+
+@pytest.mark.parametrize(
+    ("device", "field"),
+    [
+        ("encoders", "q"),
+        ("encoders", "qd"),
+        ("wrench", "wrench"),
+        ("attitude", "uav_quat"),
+        ("camera", "camera_position"),
+    ],
+)
+def test_device_that_fails_sends_no_numbers(waiting, device, field):
+    led = waiting(faults=[{"kind": "non_finite", "device": device, "after_s": 0.1}])
+    assert np.isfinite(led.step(90)["measurement"][field][-1]).all()
+    assert np.isnan(led.step(20)["measurement"][field][-1]).all()
+
+
+def test_encoder_that_is_off_shows_in_one_joint(waiting):
+    ticks = waiting(faults=[{"kind": "encoder_offset", "joint": 2, "size": 0.1, "after_s": 0.1}]).step(150)[-1]
+    np.testing.assert_allclose(ticks["measurement"]["q"] - ticks["truth"]["q"], [0, 0.1, 0, 0, 0, 0, 0], atol=1e-12)
+
+
+def test_reported_attitude_is_turned_once_and_the_uav_is_not(waiting):
+    fault = {"kind": "attitude_offset", "size": 0.5, "direction": [1.0, 0.0, 0.0], "after_s": 0.1}
+    ticks = waiting(faults=[fault]).step(400)[-1]
+    turned = multiply(ticks["measurement"]["uav_quat"].copy(), conjugate(ticks["truth"]["quat"].copy()))
+    assert angle(turned) == pytest.approx(0.5, abs=0.02)
+    assert abs(ticks["truth"]["quat"][0]) > 0.99
+
+
+def test_push_on_the_tool_is_felt_and_on_the_elbow_is_not(waiting):
+    def change(body):
+        led = waiting(faults=[{"kind": "push", "body": body, "size": 20.0, "after_s": 0.3}])
+        return led.step(299)["measurement"]["wrench"][-1, 2], led.step(60)["measurement"]["wrench"][-1, 2]
+
+    before, after = change("tool")
+    assert after - before == pytest.approx(-20.0, abs=2.0)
+    before, after = change("elbow")
+    assert abs(after - before) < 3.0
+
+
+@pytest.mark.parametrize("body", ["elbow", "tool"])
+def test_push_ends_when_the_fault_does(hinged, body):
+    """On the hinge nothing else writes the tool's row."""
+    led = hinged(faults=[{"kind": "push", "body": body, "size": 50.0, "after_s": 0.1, "lasts_s": 0.05}])
+    row = int(led.sim.world["told"]["faults"]["row"]["body"][0, 0])
+    led.step(120)
+    assert np.abs(led.sim.data.xfrc_applied[row]).max() == 50.0
+    led.step(60)
+    assert not led.sim.data.xfrc_applied[row].any()
+
+
+def test_twist_and_overload_act_on_the_uav(waiting):
+    twist = {"kind": "twist", "size": 0.2, "direction": [0.0, 0.0, 1.0], "after_s": 0.1}
+    assert waiting(faults=[twist]).step(200)["truth"]["omega"][-1, 2] > 0.3
+    assert abs(waiting().step(200)["truth"]["omega"][-1, 2]) < 0.1
+    assert waiting(faults=[{"kind": "overload", "size": 5.0}]).step(200)["truth"]["v"][-1, 2] < -0.5
+
+
+def test_unreachable_uav_hovers_elsewhere(waiting):
+    fault = {"kind": "unreachable", "size": 0.3, "direction": [0.0, 1.0, 0.0], "after_s": 0.1}
+    r = waiting(faults=[fault]).step(3000)["truth"]["r"]
+    assert r[-1, 1] - r[0, 1] == pytest.approx(0.3, abs=0.1)
+
+
+@pytest.mark.parametrize(("kind", "report", "fault"), [("magnet_coil", 0.49, 1), ("magnet_slip", 0.7, 0)])
+def test_weak_magnet_shows_in_its_self_test(waiting, kind, report, fault):
+    led = waiting(faults=[{"kind": kind, "size": 0.3}])
+    m = led.step(120, magnet=2)["measurement"][-1]
+    assert m["magnet_force"] == pytest.approx(report * 177.0, rel=0.03)
+    assert m["magnet_fault"] == fault
+
+
+def test_drift_grows_with_the_faults_own_time(waiting):
+    led = waiting(faults=[{"kind": "wrench_drift", "size": 5.0, "after_s": 0.2}])
+    z = led.step(700)["measurement"]["wrench"][:, 2]
+    assert z[650] - z[190] == pytest.approx(5.0 * 0.45, abs=0.1)
+
+
+def test_fault_waits_for_its_phase_and_for_its_time(bench_in_air):
+    """Armed when its phase first begins, it acts from after_s on for lasts_s, and does not begin again."""
+    fault = {"kind": "arm_stale", "phase": "carry", "after_s": 0.01, "lasts_s": 0.0195}
+    b = bench_in_air(faults=[fault], phases=("approach", "carry"))
+    phase = [0] * 10 + [1] * 50 + [0] * 10 + [1] * 50
+    stale = []
+    for k, number in enumerate(phase):
+        b.act(k, number)
+        stale.append(int(b.kept["faults"]["arm_stale"][0]))
+    np.testing.assert_array_equal(np.flatnonzero(stale), np.arange(20, 40))
+
+
+def test_fault_that_never_acted_is_known(waiting):
+    faults = [{"kind": "arm_stale", "after_s": 0.05, "lasts_s": 0.01}, {"kind": "twist", "phase": "carry"}]
+    led = waiting(phases=("approach", "carry"), faults=faults)
+    assert led.sim.acted == (False, False)
+    led.step(100)
+    assert led.sim.acted == (True, False)
+    led.sim.connect()
+    assert led.sim.acted == (False, False)
+
+
+@pytest.mark.parametrize("kind", FAILURES)
+def test_every_kind_changes_the_run_and_healthy_runs_are_alike(waiting, kind):
+    def run(faults):
+        led = waiting("cradle" if kind.startswith("magnet") else "air", faults=faults)
+        return led.step(400, magnet=1).tobytes()
+
+    used = {"size": 0.5} if SHAPES[kind].unit else {}
+    used |= {"direction": [0.0, 1.0, 0.0]} if "direction" in SHAPES[kind].keys else {}
+    assert run([{"kind": kind, "after_s": 0.02, **used}]) != run([])
+    assert run([{"kind": kind, "after_s": 5.0, **used}]) == run([])
+
+
+def test_fault_in_an_unknown_phase_is_refused(waiting):
+    with pytest.raises(ConfigurationError, match="no phase 'lunch'; the mission's phases are approach, carry"):
+        waiting(phases=("approach", "carry"), faults=[{"kind": "link_loss", "phase": "lunch"}])
+
+
+def test_fault_of_a_joint_that_is_not_there_is_refused(waiting):
+    with pytest.raises(ConfigurationError, match="joint 8 does not exist; the arm has joints 1 to 7"):
+        waiting(faults=[{"kind": "encoder_offset", "joint": 8}])
+
+
+@pytest.mark.parametrize(
+    "fault", [{"kind": "magnet_coil"}, {"kind": "camera_lost"}, {"kind": "non_finite", "device": "camera"}]
+)
+def test_fault_of_a_device_that_is_not_there_is_refused(hinged, fault):
+    with pytest.raises(ConfigurationError, match="cannot act: the mission flies without a"):
+        hinged(faults=[fault])

@@ -1,0 +1,90 @@
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from armland.errors import PictureError
+from armland.vision import frames as module
+from armland.vision import opengl
+from armland.vision.frames import FrameStream, frames
+
+BALL = """
+<mujoco>
+  <visual><headlight ambient="1 1 1" diffuse="0 0 0" specular="0 0 0"/></visual>
+  <worldbody>
+    <camera name="eye" pos="0 0 3" fovy="45"/>
+    <body><joint name="slide" type="slide" axis="1 0 0"/><geom size="0.4" rgba="0 0.6 0 1"/></body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.fixture(scope="module")
+def ball() -> mujoco.MjModel:
+    return mujoco.MjModel.from_xml_string(BALL)
+
+
+def drawn(model: mujoco.MjModel, qpos) -> np.ndarray:
+    try:
+        return frames(model, qpos, 160, 120, "eye")
+    except PictureError as e:
+        pytest.skip(str(e))
+
+
+def test_each_frame_shows_its_pose_in_grey(ball) -> None:
+    pictures = drawn(ball, [[0.0], [0.8]])
+    assert pictures.shape == (2, 120, 160)
+    for image, x in zip(pictures, (0.0, 0.8), strict=True):
+        rows, columns = np.nonzero(image > 100)
+        assert rows.mean() == pytest.approx(59.5, abs=0.3)
+        # 45° over 120 pixels; the ball's outline off the axis is a little farther out than its centre.
+        assert columns.mean() == pytest.approx(79.5 + x / 3.0 * 60.0 / np.tan(np.deg2rad(22.5)), abs=0.3 + 1.5 * x)
+    assert pictures[0].max() == pytest.approx(0.6 * 255, abs=1.0)
+
+
+def test_frames_do_not_depend_on_those_before(ball) -> None:
+    np.testing.assert_array_equal(drawn(ball, [[0.3], [0.8]])[1], drawn(ball, [0.8])[0])
+
+
+def test_next_backend_is_tried(ball, monkeypatch) -> None:
+    drawn(ball, [0.0])
+    working = opengl.backends()
+    monkeypatch.setattr(module, "backends", lambda: ["disable", *working])
+    assert frames(ball, [0.0], 80, 60, "eye").any()
+
+
+def test_missing_opengl_is_one_readable_line(ball, monkeypatch) -> None:
+    monkeypatch.setenv("MUJOCO_GL", "disable")
+    with pytest.raises(PictureError, match=r"\(disable: .*unset MUJOCO_GL.*apt-get install") as caught:
+        frames(ball, [0.0], 80, 60, "eye")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("qpos", "camera", "says"),
+    [
+        ([[0.0, 0.0]], "eye", r"shape \(2,\); the model needs \(1,\)"),
+        ([[0.0], [np.nan]], "eye", "all finite"),
+        ([0.0], "front", "no camera 'front'; its cameras are: eye"),
+    ],
+)
+def test_what_the_model_does_not_have_is_refused(ball, qpos, camera: str, says: str) -> None:
+    with pytest.raises(PictureError, match=says):
+        frames(ball, qpos, 80, 60, camera)
+
+
+def test_stream_draws_each_picture_when_it_is_asked_for(ball) -> None:
+    expected = drawn(ball, [[0.3], [0.8]])
+    with FrameStream(ball, 160, 120, "eye") as stream:
+        for x, picture in ((0.3, expected[0]), (0.8, expected[1]), (0.3, expected[0])):
+            np.testing.assert_array_equal(stream.draw([x]), picture)
+
+
+def test_stream_without_opengl_says_the_same(ball, monkeypatch) -> None:
+    monkeypatch.setenv("MUJOCO_GL", "disable")
+    stream = FrameStream(ball, 160, 120, "eye")
+    with pytest.raises(PictureError, match=r"\(disable: .*unset MUJOCO_GL.*apt-get install"):
+        stream.__enter__()
+    assert stream._folder is not None
+    assert not Path(stream._folder.name).exists()
