@@ -77,8 +77,9 @@ def test_track_flies_any_row_with_its_own_onboard_controller():
     made = plan(load_scenario("compare"), "track", experiment="observer")
     assert made.experiment == "observer"
     assert made.told["estimate"]["observer"]["gain"][0] > 0.0
-    assert made.onboard.controller == "cascade"
-    np.testing.assert_allclose(made.told["estimate"]["onboard_kp"][0], made.onboard.kp_nm)
+    onboard = made.scenario.onboard
+    assert onboard.controller == "cascade"
+    np.testing.assert_allclose(made.told["estimate"]["onboard_kp"][0], onboard.kp_nm)
 
 
 @pytest.mark.parametrize(

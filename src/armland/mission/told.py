@@ -69,7 +69,7 @@ class Telling(NamedTuple):
 
     @property
     def tick_s(self) -> float:
-        """From one tick to the next, s."""
+        """Period of the control loop, s."""
         return 1.0 / self.scenario.run.rate_hz
 
     def ticks(self, milliseconds: float) -> int:

@@ -1,5 +1,6 @@
 """What a campaign looks like on the terminal."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -7,6 +8,8 @@ from rich.text import Text
 
 from armland.experiments.summary import Row, Spread, Summary
 from armland.view.tables.verdicts import mark, terminal, titled
+
+_NUMBER = re.compile(r"\d+(\.\d+)?")
 
 
 def print_campaign(summary: Summary, rows: Sequence[Row], mission: str, out: Path) -> None:
@@ -23,10 +26,20 @@ def print_campaign(summary: Summary, rows: Sequence[Row], mission: str, out: Pat
     console.print(f"Missed captures that were tried again: {summary.retries}.")
     violated = ", ".join(f"{name} in {n}" for name, n in summary.violated.items())
     console.print(f"Limits violated: {violated or 'none'}.")
-    for reason, n in summary.reasons.items():
-        seeds = ", ".join(str(row["seed"]) for row in rows if not row["success"] and row["reason"] == reason)
-        console.print(f"{n} failed (seed {seeds}): {reason}", markup=False)
+    for reason, seeds in _alike(rows).items():
+        console.print(f"{len(seeds)} failed (seed {', '.join(map(str, seeds))}): {reason}", markup=False)
     console.print(f"The data is in {out}/", markup=False)
+
+
+def _alike(rows: Sequence[Row]) -> dict[str, list[int]]:
+    """Seeds by the reason of their failure; reasons that differ in a number only are one, with the first seed's number."""
+    seeds: dict[str, list[int]] = {}
+    words: dict[str, str] = {}
+    for row in rows:
+        if not row["success"]:
+            reason = words.setdefault(_NUMBER.sub("", row["reason"]), row["reason"])
+            seeds.setdefault(reason, []).append(row["seed"])
+    return seeds
 
 
 def _cells(s: Spread) -> tuple[str | Text, ...]:
