@@ -71,10 +71,22 @@ class Linked(_Intrinsic):  # type: ignore[misc]
         """Call the function from Python."""
         return self.dispatcher(*arguments)
 
+    @property
+    def name(self) -> str:
+        """Of the function."""
+        return str(self._name)
+
     def symbol(self, arguments: tuple[Any, ...]) -> str:
         """Name under which callers know it."""
         kinds = hashlib.sha256(str(arguments).encode()).hexdigest()[:24]
         return f"armland.{self.__module__}.{self._name}.{kinds}"
+
+    def expect(self, joints: int) -> None:
+        """Let it be called by what is compiled here and never run: its symbol leads nowhere."""
+        arguments = tuple(self.types_of(joints))
+        self._known.add(arguments)
+        self._linked.add(joints)
+        llvmlite.binding.add_symbol(self.symbol(arguments), 1)
 
     def link(self, joints: int) -> None:
         """Compile it, or load it from the cache, and make its address known."""

@@ -1,5 +1,6 @@
 """A cache that is torn, or that cannot be, ends in compilation and not in a traceback."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -29,10 +30,13 @@ def module(tmp_path: Path) -> Path:
 
 def run(folder: Path, how: str = "forgiving", **environment: str) -> tuple[int, str]:
     command = [sys.executable, "-c", CODE, how]
-    import os
-
     found = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, check=False, env={**os.environ, **environment}
+        command,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "NUMBA_CACHE_DIR": "", **environment},
     )
     return found.returncode, found.stdout.strip() or found.stderr.strip().rpartition("\n")[2]
 

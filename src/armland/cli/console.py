@@ -1,9 +1,7 @@
 """Progress on standard error, and whether a start compiles."""
 
-import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 from rich.console import Console
@@ -17,11 +15,18 @@ def diagnostics() -> Console:
     return Console(stderr=True)
 
 
-def announce_compilation(console: Console, part: str = "mission", function: str = "controller.control") -> None:
-    """Say so where this start compiles the laws: Numba keeps them beside their source, and none is there yet."""
-    folder = Path(__file__).parents[1] / part / "__pycache__"
-    if os.environ.get("NUMBA_DISABLE_JIT") != "1" and not any(folder.glob(f"{function}-*.nbc")):
-        console.print(COMPILING, highlight=False)
+def compile_first(console: Console) -> None:
+    """Compile what a flight needs, where it is not there yet, and say so and how far that is."""
+    from armland.compiled.warming import is_warm, warm
+
+    if is_warm():
+        return
+    console.print(COMPILING, highlight=False)
+    from armland.experiments.warming import pieces
+
+    with progress_bar(console) as bar:
+        task = bar.add_task("compiled")
+        warm(pieces(), lambda done, total: bar.update(task, completed=done, total=total))
 
 
 def progress_bar(console: Console) -> Progress:

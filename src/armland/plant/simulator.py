@@ -1,5 +1,7 @@
 """The simulated demonstrator behind the port: connect, read, command, stop. The only place that steps physics in Python."""
 
+from typing import Any
+
 import mujoco
 import numpy as np
 from numba import njit
@@ -183,21 +185,18 @@ class Simulator:
         Returns:
             How many rows were filled, and the error that ends the run where command or state are no longer finite after them.
         """
-        k, plan, scene = self.tick, controller.plan, self.scene
-        if k % BLOCK == 0:
+        if self.tick % BLOCK == 0:
             self.draw_noise()
-        flown, status = fly_block(
-            k,
-            self.world,
-            self.views,
-            self.noise,
-            (scene.model._address, self.data._address),
-            (controller.board, plan.path, plan.arm.views),
-            plan.watch,
-            rows[: BLOCK - k % BLOCK],
-        )
+        flown, status = fly_block(*self.block_arguments(controller, rows))
         self.tick += flown
         return int(flown), None if status == APPLIED else self.diverged(self.tick)
+
+    def block_arguments(self, controller: Controller, rows: Records) -> tuple[Any, ...]:
+        """What `block.fly_block` takes to fly on into `rows` (k,) of `tick_layout`, as far as the block of noise lasts."""
+        k, plan = self.tick, controller.plan
+        physics = self.scene.model._address, self.data._address
+        brain = controller.board, plan.path, plan.arm.views
+        return k, self.world, self.views, self.noise, physics, brain, plan.watch, rows[: BLOCK - k % BLOCK]
 
     def diverged(self, k: int) -> PlantError:
         """The error that ends a run whose tick `k` was refused as `NOT_FINITE`."""

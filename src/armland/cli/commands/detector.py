@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from armland.cli import options
-from armland.cli.console import announce_compilation, diagnostics, phases_told
+from armland.cli.console import compile_first, diagnostics, phases_told
 from armland.cli.exits import Judged
 from armland.cli.results import Work, publish
 
@@ -39,7 +39,7 @@ Exit code: 0, or with --fly 1 if the landing fails; 2 for bad input, 3 if someth
 )
 def detector(**given: Any) -> None:
     """Detect a fiducial marker on rendered pictures: pose error against distance, beside the camera's measurement model."""
-    announce_compilation(diagnostics())
+    compile_first(diagnostics())
     if given["fit"]:
         _fit(given["seed"])
     elif given["fly"]:

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from armland.cli import options
-from armland.cli.console import announce_compilation, diagnostics, progress_bar, reported
+from armland.cli.console import compile_first, diagnostics, progress_bar, reported
 from armland.cli.exits import Judged
 from armland.cli.results import Results, Work, publish
 
@@ -32,7 +32,7 @@ def envelope(**given: Any) -> None:
     """Compute the capture envelope: offset, speed and tilt from which the magnet grips, beside the mission's thresholds."""
     loaded = options.load(given["scenario"], given)
     console = diagnostics()
-    announce_compilation(console)
+    compile_first(console)
     from armland.experiments.envelope import study
     from armland.mission.plan import plan
     from armland.view.figures.envelope import draw_envelope

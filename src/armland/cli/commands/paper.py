@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 
 from armland.cli import options
-from armland.cli.console import announce_compilation, diagnostics, progress_bar, reported
+from armland.cli.console import compile_first, diagnostics, progress_bar, reported
 from armland.cli.exits import EXPLAINED, Judged
 from armland.cli.results import Results, Work, publish
 from armland.errors import ConfigurationError
@@ -52,7 +52,7 @@ def paper(**given: Any) -> None:
     chosen = "compare" if compared and given["scenario"] == "paper" else given["scenario"]
     loaded = options.load(chosen, given, hinged=True)
     console = diagnostics()
-    announce_compilation(console)
+    compile_first(console)
     raise Judged(_compare(loaded, given, console) if compared else _paper(loaded, given, console))
 
 

@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 
 from armland.cli import options
-from armland.cli.console import announce_compilation, diagnostics, flights_told, phases_told
+from armland.cli.console import compile_first, diagnostics, flights_told, phases_told
 from armland.cli.exits import EXPLAINED, Judged
 from armland.cli.results import Results, Work, publish
 
@@ -98,7 +98,7 @@ def _fly(mission: str, given: dict[str, Any]) -> None:
     hinged = mission_named(mission).start == "hinged"
     loaded = options.load(given["scenario"] or ("paper" if hinged else "landing"), given, hinged)
     console = diagnostics()
-    announce_compilation(console)
+    compile_first(console)
     from armland.experiments.episode import prepare
 
     flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))

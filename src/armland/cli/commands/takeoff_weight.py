@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from armland.cli import options
-from armland.cli.console import announce_compilation, diagnostics, progress_bar, reported
+from armland.cli.console import compile_first, diagnostics, progress_bar, reported
 from armland.cli.exits import Judged
 from armland.cli.results import Results, Work, publish
 
@@ -31,7 +31,7 @@ def takeoff_weight(**given: Any) -> None:
     """Find the largest take-off weight against the speed that the arm gives: by momentum theory and by flights."""
     loaded = options.load(given["scenario"], given)
     console = diagnostics()
-    announce_compilation(console)
+    compile_first(console)
     from armland.experiments.takeoff_weight.study import study
     from armland.view.figures.takeoff_weight import draw_takeoff_weight
     from armland.view.tables.takeoff_weight import print_takeoff_weight

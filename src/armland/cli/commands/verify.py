@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from armland.cli import options
-from armland.cli.console import announce_compilation, diagnostics, progress_bar, reported
+from armland.cli.console import compile_first, diagnostics, progress_bar, reported
 from armland.cli.exits import EXPLAINED, Judged
 from armland.cli.results import Results, Work, publish
 
@@ -37,7 +37,7 @@ def verify(**given: Any) -> None:
     """Run the paper's proof: where V₂ falls as (30) says, and which assumption breaks it on the whole demonstrator."""
     loaded = options.load(given["scenario"], given)
     console = diagnostics()
-    announce_compilation(console, "experiments/proof", "paths.survey_paths")
+    compile_first(console)
     from armland.experiments.proof.ledger import save_channels
     from armland.experiments.proof.verification import prove
     from armland.view.figures.proof import draw_proof_figures

@@ -1,0 +1,92 @@
+"""What a command needs is compiled beforehand, by processes side by side, into the cache.
+
+Each piece of work is a call `module:function(argument)`. Two processes take them one after the other, so the longest come first.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from subprocess import PIPE
+
+from armland.compiled.stamps import PACKAGE, STAMPS, cache, places
+
+WARM = "warm.json"
+"""Beside the stamps: those with which everything was compiled last."""
+
+PROCESSES = 2
+
+_WORKER = """
+import gc, importlib, sys
+gc.disable()  # a tenth of the time
+for line in sys.stdin:
+    module, function, argument = line.split()
+    getattr(importlib.import_module(module), function)(argument)
+    print("done", flush=True)
+"""
+
+
+def is_warm() -> bool:
+    """Whether the compiled code is there; also where there is to be none, or nowhere to keep it."""
+    place = _place()
+    return (
+        os.environ.get("NUMBA_DISABLE_JIT") == "1" or place is None or _stamps(place / WARM) == _stamps(place / STAMPS)
+    )
+
+
+def warm(work: Sequence[tuple[str, str]], tell: Callable[[int, int], None]) -> bool:
+    """Compile; returns whether all went well. Where not, the command compiles what is missing as it goes.
+
+    Args:
+        work: calls as `module:function` and argument, the longest first.
+        tell: called with how many of them are done, and how many there are.
+    """
+    left: SimpleQueue[tuple[str, str]] = SimpleQueue()
+    for piece in work:
+        left.put(piece)
+    done: list[str] = []
+
+    def run() -> None:
+        command = [sys.executable, "-c", _WORKER]
+        with subprocess.Popen(command, bufsize=0, stdin=PIPE, stdout=PIPE, stderr=subprocess.DEVNULL) as worker:
+            assert worker.stdin is not None
+            assert worker.stdout is not None
+            while not left.empty():
+                try:
+                    call, argument = left.get_nowait()
+                    worker.stdin.write(f"{call.replace(':', ' ')} {argument}\n".encode())
+                except (Empty, BrokenPipeError):
+                    return
+                # A worker that died answers nothing.
+                if not worker.stdout.readline():
+                    return
+                done.append(call)
+                tell(len(done), len(work))
+
+    with ThreadPoolExecutor(min(PROCESSES, os.cpu_count() or 1)) as pool:
+        for finished in [pool.submit(run) for _ in range(PROCESSES)]:
+            finished.result()
+    if good := len(done) == len(work):
+        place = _place()
+        if place is not None:
+            (place / WARM).write_text(json.dumps(_stamps(place / STAMPS)), encoding="utf-8")
+    return good
+
+
+def _place() -> Path | None:
+    # The first place with stamps that can be written is the one that Numba uses.
+    for place in places():
+        if os.access(cache(PACKAGE, place) / STAMPS, os.W_OK):
+            return cache(PACKAGE, place)
+    return None
+
+
+def _stamps(file: Path) -> object:
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
