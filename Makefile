@@ -14,7 +14,7 @@ PYTEST := .venv/bin/python -m pytest -n $(JOBS) --dist loadfile --durations 25 -
 INTACT := $(shell [ -x .venv/bin/python ] && [ ! -e .venv/.incomplete ] \
 	&& grep -qsF "$$(pwd -P)/.venv/" .venv/bin/pip && echo yes)
 
-.PHONY: help run test check slow bench mutants lock clean FORCE
+.PHONY: help run test check slow bench mutants pages lock clean FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -43,6 +43,9 @@ bench: $(STAMP) ## run the benchmarks
 
 mutants: $(STAMP) ## change what computes, one thing at a time, and list what no test notices; takes hours, ARGS="--count 100" minutes
 	.venv/bin/python tools/mutants.py $(ARGS)
+
+pages: $(STAMP) ## write the generated pages of docs/ anew; their trials fly for minutes
+	PYTHONPATH=tools .venv/bin/python -m pages
 
 lock: ## pin the dependencies anew in requirements.lock; ARGS=--upgrade takes the newest
 	@.venv/tools/bin/python -m pip --version >/dev/null 2>&1 || "$(PYTHON)" -m venv --clear .venv/tools

@@ -19,12 +19,12 @@ class ForwardDynamics:
         self.model = pin.buildModelFromMJCF(str(file))
         flange = self.model.frames[self.model.getFrameId("flange")]
         for mass, along in (
-            (tool.sensor_mass, 0.5 * tool.sensor_length),
-            (tool.tool_mass, tool.sensor_length + tool.tool_com),
+            (tool.sensor_mass_kg, 0.5 * tool.sensor_length_m),
+            (tool.tool_mass_kg, tool.sensor_length_m + tool.tool_com_m),
         ):
             body = pin.Inertia(mass, np.array([0.0, 0.0, along]), mass * np.eye(3) * 0.03**2)
             self.model.appendBodyToJoint(flange.parentJoint, body, flange.placement)
-        tip = flange.placement * pin.SE3(np.eye(3), np.array([0.0, 0.0, tool.length]))
+        tip = flange.placement * pin.SE3(np.eye(3), np.array([0.0, 0.0, tool.length_m]))
         self.frame = self.model.addFrame(pin.Frame("tip", flange.parentJoint, 0, tip, pin.FrameType.OP_FRAME))
         self.data = self.model.createData()
 
@@ -83,9 +83,8 @@ def workplace(plans):
 @pytest.fixture(scope="session")
 def dynamics(paper):
     from armland.models.description import ASSETS
-    from armland.models.parameters import tool_of
 
-    return ForwardDynamics(ASSETS / "lwr4.xml", tool_of(paper))
+    return ForwardDynamics(ASSETS / "lwr4.xml", paper.tool)
 
 
 @pytest.fixture
@@ -109,3 +108,34 @@ def controller(plans, workplace):
         return SimpleNamespace(law=law, arm=plan.arm, told=law.board["told"], tick=tick, sample=sample, plan=plan)
 
     return build
+
+
+@pytest.fixture(scope="session")
+def landing_scenario():
+    from armland.scenario import load_scenario
+
+    return load_scenario("landing")
+
+
+@pytest.fixture(scope="session")
+def flown(landing_scenario, tmp_path_factory):
+    """A landing and a take-off with seed 1, each with its log and the phases that were told of."""
+    from armland.experiments.episode import fly
+
+    folder, out = tmp_path_factory.mktemp("flown"), {}
+    for mission in ("landing", "takeoff"):
+        told = []
+        log = folder / f"{mission}.mcap"
+        episode = fly(landing_scenario, mission, 1, log=log, progress=lambda *phase, told=told: told.append(phase))
+        out[mission] = episode, told
+    return out
+
+
+@pytest.fixture(scope="session")
+def landed(flown):
+    return flown["landing"][0]
+
+
+@pytest.fixture(scope="session")
+def taken_off(flown):
+    return flown["takeoff"][0]

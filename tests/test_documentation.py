@@ -1,11 +1,26 @@
-"""What the documents show is run."""
+"""What the documents show is run, and what they name is there."""
 
+import pkgutil
 import re
+import shlex
+from functools import reduce
 from pathlib import Path
 
 import pytest
+import typer
+from typer.exceptions import TyperException
+from typer.main import get_command
+
+from armland.cli.app import app
+from armland.cli.options import load
+from armland.errors import ArmlandError
+from armland.experiments.judge import judgement
+from armland.mission import registry
+from armland.records import MESSAGES
+from armland.scenario import Scenario, load_scenario
 
 ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "src" / "armland"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
@@ -21,32 +36,153 @@ def blocks(language: str) -> list[tuple[str, str]]:
 @pytest.mark.parametrize("code", [pytest.param(text, id=name) for name, text in blocks("python")])
 def test_snippet_runs(code: str, monkeypatch) -> None:
     monkeypatch.chdir(ROOT)
+    # A snippet may add a mission of its own, which the other tests are not to see.
+    monkeypatch.setattr(registry, "MISSIONS", dict(registry.MISSIONS))
+    monkeypatch.setattr(judgement, "KINDS", dict(judgement.KINDS))
     namespace: dict[str, object] = {}
     exec(code, namespace)
     assert len(namespace) > 1
 
 
-@pytest.mark.parametrize("page", ["README.md", "python.md", "own_law.md"])
+@pytest.mark.parametrize("page", ["README.md", "python.md", "own_law.md", "own_mission.md"])
 def test_page_has_a_snippet(page: str) -> None:
     assert any(name.startswith(page) for name, _ in blocks("python"))
 
 
-def test_commands_in_the_documents_exist_with_their_options() -> None:
-    from typer.main import get_command
+def spans(text: str) -> list[str]:
+    """What stands between backticks, blocks left out."""
+    return re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
 
-    from armland.cli.app import app
 
-    commands = get_command(app).commands  # type: ignore[attr-defined]
+def calls(text: str) -> list[str]:
+    """Every command line of `armland` in a page: in blocks, indented, between backticks."""
     shown = [
-        (name, call.strip())
-        for name, text in blocks("sh")
-        for line in text.splitlines()
-        for call in line.partition("  #")[0].split(";")
-        if call.strip().startswith("armland ")
+        *re.findall(r"```sh\n(.*?)```", text, re.DOTALL),
+        *re.findall(r"^    .*$", text, re.MULTILINE),
+        *spans(text),
     ]
-    assert shown
-    for name, call in shown:
-        words = call.split()
-        assert words[1] in commands, (name, call)
-        known = {o for p in commands[words[1]].params for o in (*p.opts, *p.secondary_opts)}
-        assert {w for w in words if re.fullmatch(r"--[a-z-]+", w)} <= known, (name, call)
+    lines = [
+        call.strip() for part in shown for line in part.splitlines() for call in line.partition("  #")[0].split(";")
+    ]
+    return [line for line in lines if line.startswith("armland ")]
+
+
+def refusal(call: str) -> str | None:
+    """Why the command line is none that `armland` takes; None if it is."""
+    words = shlex.split(re.sub(r"\[(-[^]]*|[A-Z]+)]", r"\1", call))[1:]
+    command = get_command(app).commands.get(words[0])  # type: ignore[attr-defined]
+    if command is None:
+        return f"no command {words[0]}"
+    try:
+        given = command.make_parser(typer.Context(command)).parse_args(words[1:])[0]
+        if (mission := given.get("mission", "NAME")) not in ("NAME", "MISSION"):
+            registry.mission_named(mission)
+        load("landing", {"settings": given.get("settings")})
+    except (TyperException, ArmlandError) as e:
+        return str(e)
+    files = [w.partition(":")[0] for w in words if w.startswith("examples/")]
+    return next((f"no file {f}" for f in files if not (ROOT / f).is_file()), None)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_commands_exist_with_their_options(page: Path) -> None:
+    assert {c: why for c in calls(page.read_text("utf-8")) if (why := refusal(c))} == {}
+
+
+def test_examples_in_the_help_exist_with_their_options() -> None:
+    shown = [c for command in app.registered_commands for c in calls(command.epilog or "")]
+    assert len(shown) > 10
+    assert {c: why for c in shown if (why := refusal(c.partition(" | ")[0]))} == {}
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "armland lands",
+        "armland land --sed 7",
+        "armland land --seed",
+        "armland run hovering",
+        "armland land --set place.catched_m='[0.6, 0.0, 0.86]'",
+        "armland land --law examples/no_law.py:my_law",
+    ],
+)
+def test_command_that_is_none_is_found(call: str) -> None:
+    assert calls(f"Try `{call}`, or\n\n    {call}  # so\n") == [call, call]
+    assert refusal(call)
+
+
+CODE = {f: re.sub(r'"""(.|\n)*?"""|#.*', "", f.read_text("utf-8")) for f in PACKAGE.rglob("*.py") if f.stem != "former"}
+SETTINGS = {f: f.read_text("utf-8") for f in PACKAGE.rglob("*.toml")}
+SHARED = ("records.py", "scenario/", "scenarios/", "mission/missions/")
+"""What every page may speak of; a law's page otherwise of what stands in the files that it links to."""
+PATH = re.compile(r"[\w.-]+(/[\w.-]+)*(/|\.(py|toml|md|xml|urdf|cff|lock))")
+NAME = re.compile(r"\.?([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*)(?:\(.*\)| = .*)?")
+FOREIGN = {"pandas", "episode", "comparison"}
+"""Of another package, a variable of a snippet, a file that a command writes."""
+
+
+def code_of(page: Path, text: str) -> str:
+    """The code that a page is about, comments and docstrings left out."""
+    linked = {(page.parent / link).resolve() for link in re.findall(r"\]\(([^)\s]+\.py)\)", text)}
+    about = {f: code for f, code in CODE.items() if f in linked}
+    about |= {f: c for f, c in (CODE | SETTINGS).items() if f.relative_to(PACKAGE).as_posix().startswith(SHARED)}
+    narrow = page.parent.name == "laws" and linked & CODE.keys()
+    tests = " ".join(f.read_text("utf-8") for f in linked if "tests" in f.parts and f.is_file())
+    snippets = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    return " ".join([*(about if narrow else CODE | SETTINGS).values(), *snippets, tests])
+
+
+def is_there(name: str, scenario: Scenario) -> bool:
+    """Whether a dotted name is a field of a message, a key of the scenario, or a name of the package."""
+    first, _, rest = name.partition(".")
+    if rest in {field.name for field in MESSAGES.get(first, ())}:
+        return True
+    try:
+        reduce(getattr, name.split("."), scenario)
+    except AttributeError:
+        try:
+            pkgutil.resolve_name(name if first == "armland" else f"armland.{name}")
+        except (ImportError, AttributeError):
+            return False
+    return True
+
+
+def stale(page: Path, text: str) -> list[str]:
+    """Files and names of the package in a page that are not there, and links that say another file than they lead to."""
+    code, scenario, found = code_of(page, text), load_scenario("compare"), []
+    for span in dict.fromkeys(spans(text)):
+        path, name = PATH.fullmatch(span), NAME.fullmatch(re.sub(r"^python -m (\S+).*", r"\1", span))
+        if path and "NAME" not in span:
+            known = any((place / span).exists() for place in (ROOT, PACKAGE, PACKAGE / "scenarios"))
+        elif name and not path and name[1].split(".")[0] not in FOREIGN:
+            written = re.search(rf"\b{re.escape(name[1])}\b", code)
+            known = written is not None or ("." in name[1] and is_there(name[1], scenario))
+        else:
+            known = True
+        found += [] if known else [span]
+    links = re.findall(r"\[`?([^]`]+)`?]\(([^)#]+)\)", text)
+    return found + [f"{said} -> {to}" for said, to in links if PATH.fullmatch(said) and f"/{said}" not in f"/{to}"]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_page_names_what_is_there(page: Path) -> None:
+    assert stale(page, page.read_text("utf-8")) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "see `mission/acts.py`",
+        "see `plant/device/`",
+        "see `armland.mission.act.acts`",
+        "see `mission.table.mission.Missions`",
+        "told by `armland.flies(scenario)`",
+        "made by `python -m armland.view.pages.mission docs`",
+        "bounded by `place.catched_m`",
+        "as `truth.hinge_forces` says",
+        "what `observe_disturbances` keeps",
+        "pages in [missions/](landing.md)",
+    ],
+)
+def test_name_that_is_not_there_is_found(text: str) -> None:
+    assert len(stale(ROOT / "docs" / "made_up.md", text)) == 1

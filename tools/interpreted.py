@@ -1,7 +1,8 @@
 """Lets armland's compiled code run as plain Python: for the script that tries changes, and for a debugger.
 
 With `NUMBA_DISABLE_JIT=1` two things of compiled code are missing: fields of a record as attributes, which NumPy has for record
-arrays alone, and MuJoCo's functions by address. Both are put in place here, before anything else of armland is imported.
+arrays alone and not for every name, and MuJoCo's functions by address. Both are put in place here, before anything else of armland
+is imported.
 """
 
 import ctypes
@@ -19,6 +20,7 @@ def interpret() -> None:
 
     for name in CREATORS:
         setattr(numpy, name, _recorded(getattr(numpy, name)))
+    _name_fields()
     _call_mujoco()
 
 
@@ -30,6 +32,20 @@ def _recorded(create: Any) -> Any:
         return made.view(numpy.recarray) if made.dtype.names and type(made) is numpy.ndarray else made
 
     return created
+
+
+def _name_fields() -> None:
+    # NumPy's records have attributes of their own, such as `flags` and `sum`, which hide fields of those names.
+    import numpy
+
+    own, plain = frozenset(dir(numpy.void)) - {"dtype"}, numpy.record.__getattribute__
+
+    def attribute(record: Any, name: str) -> Any:
+        if name in own and name in (record.dtype.names or ()):
+            return record[name]
+        return plain(record, name)
+
+    numpy.record.__getattribute__ = attribute  # type: ignore[method-assign]
 
 
 def _call_mujoco() -> None:

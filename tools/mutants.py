@@ -175,6 +175,7 @@ class Workshop:
 
     def _tested(self, tests: str, plain: Plain | None, told: Path) -> int:
         import pytest
+
         from interpreted import interpret
 
         silence = os.open(os.devnull, os.O_RDWR)

@@ -227,13 +227,6 @@ class Limit:
     UAV_STALE = 128
 
 
-LIMIT_NAMES = {
-    Limit.NON_FINITE: "non_finite",
-    Limit.JOINT_POSITION: "joint_position",
-    Limit.JOINT_SPEED: "joint_speed",
-    Limit.JOINT_TORQUE: "joint_torque",
-    Limit.TORQUE_RATE: "torque_rate",
-    Limit.SINGULAR: "singularity",
-    Limit.HINGE_FORCE: "hinge_force",
-    Limit.UAV_STALE: "uav_stale",
-}
+LIMIT_NAMES = {bit: name.lower() for name, bit in vars(Limit).items() if name.isupper()}
+LIMIT_NAMES[Limit.SINGULAR] = "singularity"
+"""What a flag is called in words."""

@@ -86,3 +86,15 @@ def test_file_that_cannot_be_written_is_said_and_no_error(tmp_path, capsys) -> N
     said = capsys.readouterr().err
     assert "armland: no no/such/folder: " in said
     assert "armland: no result.json in " in said
+
+
+def test_file_that_fits_in_part_only_is_not_left(tmp_path, capsys, monkeypatch) -> None:
+    def write_half(path: Path, text: str, encoding: str) -> None:
+        path.write_bytes(text.encode(encoding)[: len(text) // 2])
+        raise OSError(28, "No space left on device")
+
+    with Results(tmp_path) as results:
+        monkeypatch.setattr(Path, "write_text", write_half)
+        results.write("result.json", "text")
+    assert capsys.readouterr().err == "armland: no result.json: No space left on device\n"
+    assert files(tmp_path) == {}

@@ -46,8 +46,19 @@ def test_work_that_fails_is_left_to_the_command(place: Path, call: str) -> None:
 
 def test_nothing_is_to_be_done_where_nothing_is_compiled_or_kept(place: Path, monkeypatch) -> None:
     monkeypatch.setattr(warming, "places", lambda: [place / "nowhere"])
+    assert warming.place() is None
     assert warming.is_warm()
     monkeypatch.setattr(warming, "places", lambda: [None])
+    assert warming.place() == place / "lander" / "__pycache__"
     assert not warming.is_warm()
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
     assert warming.is_warm()
+
+
+def test_full_disk_is_no_error(place: Path, monkeypatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    assert warming.warm([("work:note", "a")], lambda done, total: None)
+    assert not warming.is_warm()

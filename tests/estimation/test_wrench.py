@@ -255,3 +255,70 @@ def test_w1_apparent_gravity_takes_the_decks_acceleration_off(model):
             external_of(measured, R.as_matrix(), gravity=[0.0, 0.0, -9.81] - deck), 0.0, atol=1e-9
         )
         assert np.linalg.norm(external_of(measured, R.as_matrix())[:3]) > 0.1
+
+
+@pytest.mark.parametrize("cut_off_hz", [20.0, 100.0])
+def test_noise_that_is_told_is_what_a_low_pass_leaves_of_white_noise(cut_off_hz):
+    """By its answer to an impulse: its squares add up to the variance of a reading, its sum to that of a long mean."""
+    sensors = {"force_n": 0.05, "torque_nm": 0.002, "force_filter_hz": cut_off_hz}
+    p = told(load_scenario("landing", {"sensors": sensors}))[0]
+    kept = np.exp(-2.0 * np.pi * cut_off_hz * H)
+    answer = (1.0 - kept) * kept ** np.arange(2000)
+    one = np.sqrt(answer @ answer)
+    np.testing.assert_allclose(p["sigma"], one * np.repeat([0.05, 0.002], 3), rtol=1e-9)
+    assert p["correlation"] == pytest.approx(answer.sum() ** 2 / (answer @ answer))
+
+
+def test_sensor_without_noise_is_told_a_least_one():
+    p = told(load_scenario("landing", {"sensors": {"force_n": 0.0, "torque_nm": 0.0}}))[0]
+    share = 1.0 / p["correlation"]
+    np.testing.assert_allclose(p["sigma"], np.sqrt(share) * np.repeat([1e-3, 1e-4], 3))
+
+
+def test_uncertainty_of_the_output_is_that_of_reading_and_bias_together():
+    s, external, sigma, p = np.zeros(1, kept_layout()), np.zeros(6), np.zeros(6), settings()
+    s["variance"] = np.square([0.03, 0.04, 0.05, 1e-3, 2e-3, 3e-3])
+    compensate(WEIGHT, UPRIGHT, np.array([0.0, 0.0, 9.81]), False, p[0], s[0], external, sigma)
+    drifted = p["drift"][0] ** 2 * H
+    np.testing.assert_allclose(sigma**2, np.repeat(SIGMA, 3) ** 2 + s["variance"][0], rtol=1e-12)
+    np.testing.assert_allclose(s["variance"][0][:3] - np.square([0.03, 0.04, 0.05]), drifted[:3], rtol=1e-6)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_bias_follows_its_estimate_at_its_rate_and_stops_there(sign):
+    """0.5 N/s and 0.02 N·m/s, 100 ms long; while nothing is learnt it stands still."""
+    s, external, sigma, p = np.zeros(1, kept_layout()), np.zeros(6), np.zeros(6), settings()
+    s["target"] = sign * np.array([1.0, 0.02, 0.05, 0.01, 0.001, 0.002])
+    for free in (False, True):
+        for _ in range(100):
+            compensate(WEIGHT, UPRIGHT, np.array([0.0, 0.0, 9.81]), free, p[0], s[0], external, sigma)
+        moved = sign * np.array([0.05, 0.02, 0.05, 0.002, 0.001, 0.002]) * free
+        np.testing.assert_allclose(s["bias"][0], moved, atol=1e-12)
+        np.testing.assert_allclose(external, -moved, atol=1e-12)
+
+
+def test_block_that_was_interrupted_is_forgotten():
+    """What was summed up before somebody touched it, and what was waiting, counts for nothing afterwards."""
+    s, external, sigma, p = np.zeros(1, kept_layout()), np.zeros(6), np.zeros(6), settings()
+    block, up = int(p["block"][0]), np.array([0.0, 0.0, 9.81])
+    for free, load, ticks in ((True, 1.0, block + 10), (False, 1.0, 1), (True, 0.0, 2 * block)):
+        for _ in range(ticks):
+            compensate(WEIGHT + load, UPRIGHT, up, free, p[0], s[0], external, sigma)
+    assert s["blocks"][0] == 1
+    np.testing.assert_allclose(s["target"][0], 0.0, atol=1e-12)
+    assert (s["count"][0], s["has_waiting"][0]) == (0, 1)
+
+
+def test_estimate_is_the_mean_of_the_first_blocks_and_then_forgets_slowly():
+    """Of blocks of 0.3, 0.6 and 0.9 N the mean; with a tenth block's weight for ever, a tenth of each newer one."""
+    s, external, sigma, p = np.zeros(1, kept_layout()), np.zeros(6), np.zeros(6), settings()
+    load, found = np.array([1.0, -1.0, 0.5, 0.0, 0.0, 0.0]), []
+    for size in (0.3, 0.6, 0.9, 0.0):
+        for _ in range(int(p["block"][0])):
+            compensate(WEIGHT + size * load, UPRIGHT, np.array([0.0, 0.0, 9.81]), True, p[0], s[0], external, sigma)
+        found.append(s["target"][0].copy())
+    np.testing.assert_allclose(found, np.outer([0.0, 0.3, 0.45, 0.6], load), atol=1e-12)
+    s["blocks"], s["waiting"] = 50, 0.1 * load
+    for _ in range(int(p["block"][0])):
+        compensate(WEIGHT, UPRIGHT, np.array([0.0, 0.0, 9.81]), True, p[0], s[0], external, sigma)
+    np.testing.assert_allclose(s["target"][0], (0.9 * 0.6 + 0.1 * 0.1) * load, atol=1e-12)

@@ -4,41 +4,10 @@ import pytest
 
 
 @pytest.fixture(scope="session")
-def landing_scenario():
-    from armland.scenario import load_scenario
-
-    return load_scenario("landing")
-
-
-@pytest.fixture(scope="session")
 def paper_scenario():
     from armland.scenario import load_scenario
 
     return load_scenario("paper")
-
-
-@pytest.fixture(scope="session")
-def flown(landing_scenario, tmp_path_factory):
-    """A landing and a take-off with seed 1, each with its log and the phases that were told of."""
-    from armland.experiments.episode import fly
-
-    folder, out = tmp_path_factory.mktemp("flown"), {}
-    for mission in ("landing", "takeoff"):
-        told = []
-        log = folder / f"{mission}.mcap"
-        episode = fly(landing_scenario, mission, 1, log=log, progress=lambda *phase, told=told: told.append(phase))
-        out[mission] = episode, told
-    return out
-
-
-@pytest.fixture(scope="session")
-def landed(flown):
-    return flown["landing"][0]
-
-
-@pytest.fixture(scope="session")
-def taken_off(flown):
-    return flown["takeoff"][0]
 
 
 @pytest.fixture(scope="session")

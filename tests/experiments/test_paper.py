@@ -7,7 +7,7 @@ import pytest
 
 from armland.experiments.judge.brief import brief_of
 from armland.experiments.judge.tracking import Metrics
-from armland.experiments.paper import judge, judged, metrics_of, prepare, run_experiments
+from armland.experiments.paper import Verdict, judge, judged, metrics_of, prepare, run_experiments
 from armland.runtime.log import read_log
 
 
@@ -86,3 +86,9 @@ def test_each_verdict_can_fail(change, claim):
     assert all(v.holds for v in judge(good))
     bad = {name: replace(m, **change.get(name, {})) for name, m in good.items()}
     assert [v.claim.startswith(claim) for v in judge(bad) if not v.holds] == [True]
+
+
+@pytest.mark.parametrize(("value", "holds"), [(0.9, False), (1.0, True), (1.5, True), (2.0, True), (2.1, False)])
+def test_verdict_holds_up_to_its_bounds(value, holds):
+    assert Verdict.within("a claim", value, 1.0, 2.0) == Verdict("a claim", value, [1.0, 2.0], holds)
+    assert not Verdict.within("a claim", float("nan"), 1.0, 2.0).holds

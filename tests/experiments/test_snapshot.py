@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from armland.errors import PlantError
-from armland.experiments.episode import prepare
-from armland.experiments.quiet import quiet
+from armland.experiments.episode import prepare, quiet
 from armland.experiments.snapshot import Run
 from armland.scenario.faults import Fault
 

@@ -333,3 +333,76 @@ def test_proof_is_taken_at_every_fifth_tick(bench, landing_plan, tick, fresh):
     bench.tick.proof["v2"], bench.m["tick"] = -1.0, tick
     acted(bench, "carry")
     assert (bench.tick.proof["v2"][0] > 0.0) == fresh
+
+
+@pytest.mark.parametrize(("phase", "magnet"), [("guide", 0), ("carry", 1), ("self_test", 2)])
+def test_what_was_commanded_is_remembered(bench, landing_plan, phase, magnet):
+    """Thrust for as long as it travels, the magnet for the next tick's signs, and the law's force for the observer."""
+    pose(bench, landing_plan.home, np.zeros(7))
+    hold(bench, 2.0, [0.004, 0.0, 0.0])
+    bench.m["tick"], bench.kept["estimate"]["thrust_log"] = 2003, -1.0
+    acted(bench, phase)
+    log = bench.kept["estimate"]["thrust_log"][0]
+    assert log[2003 % 256] == bench.c["thrust"][0] == bench.kept["act"]["thrust"][0]
+    assert (np.delete(log, 2003 % 256) == -1.0).all()
+    assert bench.c["magnet"][0] == bench.kept["act"]["magnet"][0] == magnet
+    if phase == "carry":
+        np.testing.assert_array_equal(bench.kept["act"]["force"], bench.c["force"])
+        assert np.abs(bench.c["force"]).max() > 0.1
+
+
+def test_arm_that_holds_nothing_asks_for_no_torque_and_tells_what_the_observer_last_knew(bench, landing_plan):
+    pose(bench, landing_plan.home, np.zeros(7))
+    hold(bench, 2.0)
+    bench.c["delta_tau"], bench.c["force"] = 9.0, 9.0
+    bench.kept["estimate"]["observer"]["force"] = [0.1, -0.2, 0.3]
+    acted(bench, "guide")
+    np.testing.assert_array_equal(bench.c["delta_tau"], 0.0)
+    np.testing.assert_array_equal(bench.c["force"], 0.0)
+    np.testing.assert_array_equal(bench.e["disturbance"][0], [0.1, -0.2, 0.3])
+
+
+@pytest.mark.parametrize("turn", [(0.0, 0.05, 0.0), (-0.05, 0.0, 0.0), (0.03, 0.04, 0.0)])
+def test_b1_load_swings_about_both_axes(bench, turn):
+    """At rest on a pivot at rest it falls by m g l θ/(J + m l²), and its lever pulls the pivot along."""
+    t = bench.told["estimate"]
+    R = matrix(from_rotation_vector(np.array(turn)))
+    bench.e["quat"][0] = from_rotation_vector(np.array(turn))
+    load_force(bench.b)
+    mass, lever = t["body_mass"][0], -t["lever"][0, 2]
+    falls = mass * lever * 9.81 * R[:2, 2] / (0.0065 + mass * lever**2)
+    np.testing.assert_allclose(bench.c["force"][0, :2], mass * lever * falls, rtol=2e-3, atol=1e-12)
+
+
+@pytest.mark.parametrize(("share", "left"), [(0.0, 1.0), (0.4, 0.6), (1.5, 0.0)])
+def test_arm_carries_what_dying_rotors_leave_and_never_pushes_down(bench, share, left):
+    weight = bench.told["estimate"]["weight"][0]
+    bench.e["thrust"] = share * weight
+    load_force(bench.b)
+    assert bench.c["force"][0, 2] == pytest.approx(left * weight)
+
+
+def test_tool_follows_its_leans_speed_and_is_braked_against_it(bench, dynamics, landing_plan):
+    """The angular acceleration is 2ζω times the rate that is missing, beside the lean's own."""
+    q, s = landing_plan.home, bench.kept["refer"]["balance"]
+    pose(bench, q, np.zeros(7))
+    hold(bench, 0.0)
+    s["lean"] = s["lean_a"] = 0.0
+    found = []
+    for speed in (0.0, 0.3):
+        s["lean_v"] = [speed, -speed, 0.0]
+        tau = acted(bench, "balancing") - dynamics.jacobian(q)[:3].T @ bench.c["force"][0]
+        found.append(dynamics.acceleration(q, np.zeros(7), tau)[3:])
+    damping = 2.0 * landing_plan.scenario.control.free_damping * RATE
+    np.testing.assert_allclose(found[1] - found[0], damping * np.array([0.3, -0.3, 0.0]), atol=1e-6)
+
+
+def test_orientations_torque_stays_out_of_the_balance(bench, landing_plan):
+    """The tool is led by an acceleration; a torque to where it pointed would hold it back."""
+    q = landing_plan.home + 0.02
+    pose(bench, q, np.zeros(7))
+    hold(bench, 0.0)
+    acted(bench, "holding")
+    assert np.abs(bench.c["torque"]).max() > 0.01
+    acted(bench, "balancing")
+    np.testing.assert_array_equal(bench.c["torque"], 0.0)

@@ -151,3 +151,117 @@ def test_uav_hangs_on_the_arm_in_the_phases_that_hold_it_and_the_ends_that_keep_
     bench.kept["decide"]["begin"] = 1000
     decide(bench.b)
     assert bench.kept["decide"]["held"][0] == held
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_each_axis_counts_in_the_signals_of_distance_and_speed(bench, axis):
+    """Plate, arm, reference and grip are apart along one axis at a time, and move along it."""
+    station, e, way = bench.told["decide"]["station"][0], bench.e, np.eye(3)[axis]
+    e["plate"], e["plate_v"] = station + 0.04 * way, 0.3 * way
+    e["r"], e["v"] = station + 0.01 * way, 0.1 * way
+    bench.kept["refer"]["r"], bench.kept["decide"]["grip"] = station + 0.06 * way, station - 0.02 * way
+    e["hinge_force"] = -7.0 * way
+    found = signals(bench)
+    assert found["uav_error"] == pytest.approx(0.04)
+    assert found["uav_speed"] == pytest.approx(0.3)
+    assert found["relative_speed"] == pytest.approx(0.2)
+    assert found["arm_error"] == pytest.approx(0.05)
+    assert found["retreat"] == pytest.approx(0.03)
+    assert found["hinge_force"] == pytest.approx(7.0)
+    assert found["offset"] == pytest.approx(0.03 if axis < 2 else 0.0, abs=1e-12)
+    assert found["gap"] == pytest.approx(0.03 if axis == 2 else 0.0, abs=1e-12)
+    assert found["pull"] == pytest.approx(7.0 if axis == 2 else 0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("turn", "tilt"), [((0.2, 0, 0), 0.2), ((0, -0.3, 0), 0.3), ((0, 0, 1.0), 0.0), ((3.0, 0, 0), 3.0)]
+)
+def test_tilt_is_the_angle_of_the_bodys_axis_to_the_vertical(bench, turn, tilt):
+    bench.e["quat"][0] = from_rotation_vector(np.array(turn, float))
+    assert signals(bench)["tilt"] == pytest.approx(np.rad2deg(tilt), abs=1e-4)
+
+
+def test_magnet_and_rotors_tell_of_themselves(bench):
+    bench.m["magnet_fault"] = 1
+    assert signals(bench)["magnet_fault"] == 1.0
+    bench.kept["act"]["thrust"], bench.kept["act"]["hover"] = 1.0, 5.0
+    bench.enter("carry")
+    # Below the end of its ramp as well as above it.
+    assert signals(bench)["thrust_left"] == pytest.approx(bench.row["share"] * 5.0 - 1.0)
+
+
+@pytest.mark.parametrize(
+    ("phase", "magnet", "elapsed", "end"),
+    [
+        ("carry", 1, 0.2, "holding"),
+        ("carry", 1, 0.1, "carry"),
+        ("carry", 0, 0.2, "carry"),
+        ("self_test", 0, 0.2, "refused"),
+        ("self_test", 0, 0.05, "refused"),
+    ],
+)
+def test_coil_is_looked_at_once_it_has_had_the_time_to_carry_its_current_or_is_tested(
+    bench, phase, magnet, elapsed, end
+):
+    bench.enter(phase)
+    kept = bench.kept["decide"]
+    kept["begin"], bench.kept["act"]["magnet"], bench.m["magnet_fault"] = 1000 - round(1000 * elapsed), magnet, 1
+    bench.e["r"][0, 2] = 0.8
+    for _ in range(25):
+        if not bench.row["final"]:
+            decide(bench.b)
+    assert bench.plan.names[int(kept["phase"][0])] == end
+
+
+def test_time_in_the_phase_is_told_in_seconds(bench):
+    bench.enter("guide")
+    bench.kept["decide"]["begin"] = 750
+    bench.e["plate"] = bench.told["decide"]["station"][0] + 1.0
+    decide(bench.b)
+    assert bench.tick.mission["elapsed"][0] == pytest.approx(0.25)
+    assert bench.tick.mission["tick"][0] == 1000
+    assert bench.kept["decide"]["signals"][0, SIGNAL["elapsed"]] == pytest.approx(0.25)
+
+
+def test_magnet_that_stays_as_it_is_leaves_the_mark_of_the_last_release(bench):
+    bench.kept["decide"]["grip"], bench.e["r"] = 9.0, 0.5
+    bench.enter("guide")
+    enter(bench.plan.number("approach"), 1000, bench.b)
+    np.testing.assert_array_equal(bench.kept["decide"]["grip"], 9.0)
+    bench.kept["act"]["magnet"] = 1
+    enter(bench.plan.number("carry"), 1000, bench.b)
+    np.testing.assert_array_equal(bench.kept["decide"]["grip"], 9.0)
+
+
+def test_disturbance_is_forgotten_only_where_the_uav_is_caught(bench):
+    observer = bench.kept["estimate"]["observer"]
+    for before, after, kept in (("guide", "approach", True), ("hand_over", "carry", True), ("close", "capture", False)):
+        bench.enter(before)
+        observer["force"], bench.kept["decide"]["seen"]["caught"] = 1.0, 7
+        enter(bench.plan.number(after), 1000, bench.b)
+        assert observer["force"].all() == kept, before
+        assert bench.kept["decide"]["seen"]["caught"][0] == (7 if kept else 1000)
+
+
+def test_phase_that_is_no_miss_is_no_retry(bench):
+    bench.enter("guide")
+    enter(bench.plan.number("approach"), 1234, bench.b)
+    assert bench.kept["decide"]["retries"][0] == 0
+    assert bench.kept["decide"]["begin"][0] == 1234
+
+
+@pytest.mark.parametrize(("phase", "elapsed"), [("unload", 0.5), ("withdraw", 1.0), ("guide", 1.0)])
+def test_force_counts_as_unexplained_only_after_the_whole_of_its_time(bench, phase, elapsed):
+    row, p = bench.enter(phase), bench.told["decide"][0]
+    weight = p["weight"]
+    assert np.isnan(load_expected(row, elapsed - 0.01, bench.e[0], p, weight))
+    assert load_expected(row, elapsed + 0.01, bench.e[0], p, weight) == 0.0
+
+
+def test_what_the_rotors_leave_is_by_the_command_that_carries_the_weight(bench):
+    """A command of 4 N is said to carry 5 N: at 1 N a quarter is carried; where nothing is known of it, all is."""
+    row, p = bench.enter("carry"), bench.told["decide"][0]
+    bench.e["thrust"], bench.e["r"][0, 2] = 1.0, 0.8
+    assert load_expected(row, 0.1, bench.e[0], p, 4.0) == pytest.approx(0.75 * p["weight"])
+    bench.e["thrust"] = 0.0
+    assert load_expected(row, 0.1, bench.e[0], p, 0.0) == pytest.approx(p["weight"])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from armland.mission.estimate import SINGULARITY_PERIOD, acting_thrust, estimate, estimate_arm, predict_torque, screen
+from armland.mission.reference.moves import LAUNCH
 from armland.rotations import from_rotation_vector
 
 
@@ -67,3 +68,57 @@ def test_torque_on_board_turns_the_uav_back_to_its_set_point(bench):
     predict_torque(q_d, p[0], bench.e[0])
     kp, kd = np.array(bench.plan.scenario.onboard.kp_nm), np.array(bench.plan.scenario.onboard.kd_nms)
     np.testing.assert_allclose(bench.e["tau_att"][0], -kp * [0.01, -0.02, 0.03] - kd * [0.1, 0.2, 0.3], rtol=1e-3)
+
+
+def test_smallest_singular_value_is_known_from_the_first_tick_on(bench):
+    bench.kept["estimate"]["sigma"], bench.m["tick"], bench.kept["limit"]["started"] = -1.0, 7, 0
+    estimate(bench.b)
+    assert bench.kept["estimate"]["sigma"][0] > 0.0
+
+
+@pytest.mark.parametrize(("phase", "learns"), [("guide", True), ("align", False), ("carry", False)])
+def test_bias_of_the_force_is_learnt_in_the_phases_that_touch_nothing(bench, phase, learns):
+    bench.enter(phase)
+    # Within what the tool's weight makes plausible.
+    bench.m["wrench"][0, 2] = 0.30 * 9.81
+    estimate(bench.b)
+    assert (bench.kept["estimate"]["wrench"]["count"][0] == 1) == learns
+
+
+@pytest.mark.parametrize(("magnet", "counts"), [(0, True), (1, False), (2, True)])
+def test_release_is_counted_while_the_magnet_is_off(bench, magnet, counts):
+    bench.kept["act"]["magnet"], bench.kept["decide"]["retreat"] = magnet, 1.0
+    bench.m["wrench"][0, 2] = 0.30 * 9.81
+    held = bench.kept["estimate"]["contact"]["held"]
+    held["active"], held["count"] = 1, 5
+    estimate(bench.b)
+    # Of a magnet that is on it begins anew.
+    assert held["count"][0] == (6 if counts else 1)
+
+
+@pytest.mark.parametrize("held", [1, 0])
+def test_filter_is_told_of_the_push_of_a_run_up(bench, held):
+    """The reference's acceleration while the arm holds the UAV, less its drag; let go, the drag at the speed it was given."""
+    row, p = bench.enter("carry"), bench.told["estimate"]
+    row["arm"], row["held"] = LAUNCH, held
+    bench.kept["refer"]["a"], bench.kept["refer"]["v"], p["launch"] = [1.5, 0.0, 0.0], [0.4, 0.0, 0.0], [0.6, 0.0, 0.0]
+    estimate(bench.b)
+    rate = p["drag"][0] / p["mass"][0]
+    told = bench.kept["estimate"]["filter"]["push"][0, 1000]
+    np.testing.assert_allclose(told, [1.5 - rate * 0.4 if held else -rate * 0.6, 0.0, -9.81], atol=1e-12)
+
+
+def test_plate_that_was_seen_once_stays_one_that_was_seen(bench):
+    bench.told["estimate"]["fused"], bench.kept["estimate"]["seen"] = 1, 1
+    estimate(bench.b)
+    assert bench.e["plate_valid"][0] == 0
+    assert bench.kept["estimate"]["seen"][0] == 1
+
+
+def test_thrust_is_remembered_for_as_long_as_it_travels(bench):
+    """A single command of 1 N at tick 2000 acts from 25 ticks later on, by the rotors' gain, and no tick before."""
+    p, s = bench.told["estimate"], bench.kept["estimate"]
+    s["thrust_log"], s["acting"] = 0.0, 0.0
+    s["thrust_log"][0, 2000 % 256] = 1.0
+    assert acting_thrust(2024, p[0], s[0]) == 0.0
+    assert acting_thrust(2025, p[0], s[0]) == pytest.approx(1.0 - np.exp(-0.02))

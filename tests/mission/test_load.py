@@ -88,3 +88,66 @@ def test_velocity_of_the_centre_of_mass_counts_and_not_the_pivots(bench):
         bench.e["thrust"], bench.kept["act"]["force"] = 0.0, mass * (a + [0.0, 0.0, 9.81])
         observe(bench.b, True)
     np.testing.assert_allclose(bench.e["disturbance"][0], 0.0, atol=2e-3)
+
+
+@pytest.mark.parametrize("turn", [(0.5, 0.0, 0.0), (0.0, -0.5, 0.0), (0.3, 0.4, 0.0)])
+def test_tilted_rotors_carry_what_of_their_thrust_is_vertical(bench, turn):
+    weight = bench.told["estimate"]["weight"][0]
+    R = matrix(from_rotation_vector(np.array(turn)))
+    bench.e["quat"][0], bench.e["thrust"] = from_rotation_vector(np.array(turn)), 0.5 * weight
+    bench.m["wrench"] = reading(bench, np.zeros(3), np.zeros(3))
+    estimate_load(False, True, 0.0, bench.b)
+    assert bench.e["ground_share"][0] == pytest.approx(1.0 - 0.5 * R[2, 2], rel=1e-9)
+
+
+def test_tool_on_a_deck_that_accelerates_pulls_at_its_sensor(bench):
+    """The deck falls away at 2 m/s² and goes sideways: the tool's weight on it is that much less."""
+    deck = np.array([0.5, -0.3, -2.0])
+    bench.board["environment"]["base_a"] = deck
+    bench.told["estimate"]["tool_follows"] = 0.0
+    bench.m["wrench"] = reading(bench, np.array([1.0, 2.0, 3.0]), deck)
+    estimate_load(False, True, 0.0, bench.b)
+    np.testing.assert_allclose(bench.e["hinge_force"][0], [1.0, 2.0, 3.0], atol=1e-9)
+
+
+def test_force_is_believed_up_to_its_age(bench):
+    bench.m["wrench"] = reading(bench, np.array([1.0, -2.0, 3.0]), np.zeros(3))
+    bench.m["wrench_tick"] = 1000 - bench.told["estimate"]["wrench_age"][0]
+    estimate_load(False, True, 0.0, bench.b)
+    np.testing.assert_allclose(bench.e["hinge_force"][0], [1.0, -2.0, 3.0], atol=1e-9)
+
+
+def test_bias_is_learnt_where_the_end_effector_is_free_and_only_there(bench):
+    blocks = {}
+    for free in (False, True):
+        bench.kept["estimate"]["wrench"] = 0
+        bench.m["wrench"] = reading(bench, np.array([0.3, 0.0, 0.0]), np.zeros(3))
+        bench.told["estimate"]["wrench"]["block"] = 5
+        for _ in range(20):
+            estimate_load(free, False, 0.0, bench.b)
+        blocks[free] = int(bench.kept["estimate"]["wrench"]["blocks"][0])
+    assert blocks == {False: 0, True: 3}
+
+
+def test_release_needs_a_magnet_that_is_off_and_a_retreat(bench):
+    for magnet, retreat, released in ((True, 1.0, 0), (False, 0.0, 0), (False, 1.0, 1)):
+        bench.kept["estimate"]["contact"] = 0
+        bench.m["wrench"] = reading(bench, np.zeros(3), np.zeros(3))
+        bench.told["estimate"]["contact"]["release"]["off_ticks"] = 3
+        for _ in range(10):
+            estimate_load(False, magnet, retreat, bench.b)
+        assert bench.kept["estimate"]["load"]["released"][0] == released, (magnet, retreat)
+
+
+def test_gravity_that_the_observer_knows_is_that_at_the_centre_of_mass(bench):
+    """On a deck that turns at ω about z the outward pull ω² r is that of the centre of mass, a lever's length above the pivot."""
+    lever, spin, mass = bench.told["estimate"]["lever"][0], 3.0, bench.told["estimate"]["body_mass"][0]
+    bench.board["environment"]["base_omega"] = [spin, 0.0, 0.0]
+    bench.e["r"], bench.e["v"] = [0.4, 0.3, 0.8], 0.0
+    centre = bench.e["r"][0] - lever
+    pull = spin**2 * np.array([0.0, centre[1], centre[2]])
+    # At rest on the deck: arm and rotors hold it against weight and pull.
+    bench.e["thrust"], bench.kept["act"]["force"] = 2.0, -mass * (pull + [0.0, 0.0, -9.81]) - [0.0, 0.0, 2.0]
+    for _ in range(30):
+        observe(bench.b, True)
+    np.testing.assert_allclose(bench.e["disturbance"][0], 0.0, atol=1e-9)

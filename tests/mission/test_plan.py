@@ -122,5 +122,5 @@ def test_missions_say_what_they_are(name):
 
 
 def test_table_that_contradicts_itself_is_refused_before_the_arm_is_asked():
-    with pytest.raises(ConfigurationError, match=r"lost_offset_m = 0\.003 must exceed"):
+    with pytest.raises(ConfigurationError, match=r"must be below lost_offset_m = 0\.003"):
         plan(load_scenario("landing", {"bounds": {"lost_offset_m": 0.003}}), "landing")

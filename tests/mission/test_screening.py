@@ -93,3 +93,50 @@ def test_first_sample_that_is_no_number_becomes_a_finite_one():
     assert screen(m, good) == 11
     np.testing.assert_array_equal(m["q"], 0.0)
     np.testing.assert_array_equal(m["uav_quat"][0], [1.0, 0.0, 0.0, 0.0])
+
+
+def test_first_sample_leaps_from_nowhere_even_at_tick_zero():
+    """Before the first sample nothing is known; from the second on it is, whatever the tick that it began with."""
+    good, m = np.zeros(1, layout("measurement", 7)), measurement(0)
+    good["uav_quat"][0, 0] = 1.0
+    m["q"] = 1.0
+    assert screen(m, good) == 0
+    m = measurement(1)
+    m["q"] = 1.0 + 2.0 * LEAP
+    assert screen(m, good) == 7
+    assert good["tick"][0] == 2
+
+
+@pytest.mark.parametrize("field", ["camera_position", "camera_quat"])
+@pytest.mark.parametrize("value", [np.inf, -np.inf, np.nan])
+def test_image_with_an_endless_number_has_not_arrived_either(field, value):
+    good, m = np.zeros(1, layout("measurement", 7)), measurement()
+    m["camera_fresh"], m["camera_position"], m["camera_quat"] = 1, [0.3, -0.2, 0.5], [0.5, -0.5, 0.5, 0.5]
+    assert screen(m, good) == 0
+    m[field][0, 2] = value
+    assert screen(m, good) == 1
+    assert m["camera_fresh"][0] == 0
+
+
+@pytest.mark.parametrize(("turn", "believed"), [(0.9, True), (1.1, False), (-1.1, False)])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_attitude_may_leap_by_its_bound_in_radians_whichever_sign_its_quaternion_has(turn, sign, believed):
+    good, m = np.zeros(1, layout("measurement", 7)), measurement()
+    assert screen(m, good) == 0
+    m = measurement(101)
+    m["uav_quat"][0] = sign * from_rotation_vector(np.array([0.0, turn * ATTITUDE_LEAP, 0.0]))
+    screen(m, good, True)
+    assert (m["uav_tick"][0] == 101) == believed
+
+
+@pytest.mark.parametrize(("ticks", "believed"), [(5, False), (20, False), (30, True)])
+def test_attitude_may_go_as_far_as_twice_its_rates_explain(ticks, believed):
+    """0.4 rad at 5 rad/s about an axis aslant: 0.15 rad may leap, and 0.01 rad a tick are explained."""
+    good, m = np.zeros(1, layout("measurement", 7)), measurement()
+    m["uav_rate"] = [3.0, 0.0, -4.0]
+    assert screen(m, good) == 0
+    m = measurement(100 + ticks)
+    m["uav_rate"] = [1.0, 0.0, 0.0]
+    m["uav_quat"][0] = from_rotation_vector(np.array([0.0, 0.0, 0.4]))
+    screen(m, good, True)
+    assert (m["uav_tick"][0] == 100 + ticks) == believed

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from armland.mission.reference.moves import HOLD, LAUNCH, LEAVE
-from armland.mission.sight import known_push, lift_of, look_at_grip, quaternion_of, take_attitude
+from armland.mission.sight import estimate_plate, known_push, lift_of, look_at_grip, quaternion_of, take_attitude
+from armland.mission.table.phases import MAGNET, UAV
 from armland.rotations import conjugate, from_rotation_vector, matrix, multiply
 
 
@@ -78,3 +79,116 @@ def test_rotors_lift_a_uav_that_flies_and_all_together_one_that_is_carried(bench
     bench.kept["act"]["hover"], bench.e["thrust"] = 4.0, 2.0
     lift = lift_of(bench.enter(phase), bench.kept["act"][0], bench.told["estimate"][0], bench.e[0])
     assert lift == pytest.approx(0.5 * weight if flies else weight)
+
+
+@pytest.mark.parametrize(
+    ("uav", "magnet", "flies"),
+    [
+        ("autonomous", "on", True),
+        ("station", "off", True),
+        ("cruise", "on", True),
+        ("level", "off", True),
+        ("level", "on", False),
+        ("ramp", "off", False),
+        ("off", "off", False),
+        ("balance", "on", False),
+    ],
+)
+def test_who_flies_is_lifted_by_its_own_thrust_and_who_is_carried_by_as_much_as_it_weighs(bench, uav, magnet, flies):
+    row, weight = bench.enter("guide"), bench.told["estimate"]["weight"][0]
+    row["uav"], row["magnet"] = UAV.index(uav), MAGNET.index(magnet)
+    bench.kept["act"]["hover"], bench.e["thrust"] = 4.0, 1.0
+    lift = lift_of(row, bench.kept["act"][0], bench.told["estimate"][0], bench.e[0])
+    assert lift == pytest.approx(0.25 * weight if flies else weight)
+
+
+def test_thrust_whose_weight_is_not_known_yet_lifts_by_a_finite_force(bench):
+    bench.kept["act"]["hover"], bench.e["thrust"] = 0.0, 0.0
+    assert lift_of(bench.enter("guide"), bench.kept["act"][0], bench.told["estimate"][0], bench.e[0]) == 0.0
+
+
+class Flight:
+    """A UAV above the arm, seen by the camera every 33 ms without error; the arm leans, and so do UAV and camera."""
+
+    def __init__(self, bench, velocity=(0.0, 0.0, 0.0)):
+        self.bench, self.velocity = bench, np.array(velocity)
+        self.arm, self.uav = (
+            from_rotation_vector(np.array([0.1, -0.05, 0.3])),
+            from_rotation_vector(np.array([0.0, 0.0, 0.4])),
+        )
+        state = bench.board["arm"]
+        state["rotation"], state["position"] = matrix(self.arm), [0.6, 0.1, 0.5]
+        self.at, self.tick = np.array([0.65, 0.05, 0.9]), 1000
+
+    def fly(self, ticks, push=(0.0, 0.0, 0.0), seen=True, acceleration=(0.0, 0.0, 0.0)):
+        bench, push = self.bench, np.array(push, float)
+        weight = bench.told["estimate"]["weight"][0]
+        for _ in range(ticks):
+            bench.m["tick"] = bench.m["uav_tick"] = self.tick
+            bench.m["uav_quat"][0], bench.m["camera_fresh"] = self.uav, 0
+            if seen and self.tick % 33 == 0:
+                see(bench, self.at - bench.board["arm"]["position"][0], self.arm, self.uav)
+                # A camera is never free of noise: its digits tell a frozen image.
+                bench.m["camera_position"][0, 2] += 1e-9 * (self.tick % 7)
+                bench.m["camera_capture"], bench.m["camera_sigma"] = self.tick, 1e-3
+            estimate_plate(weight, push, bench.b)
+            self.velocity = self.velocity + 1e-3 * np.array(acceleration)
+            self.at, self.tick = self.at + 1e-3 * self.velocity, self.tick + 1
+
+
+def test_plate_is_where_the_camera_of_a_leaning_arm_sees_it(bench):
+    """In deck axes, with the attitude of the UAV; nobody vouches for it before it is seen, nor long after."""
+    flight = Flight(bench)
+    flight.fly(10, seen=False)
+    assert bench.e["plate_valid"][0] == 0
+    flight.fly(300)
+    np.testing.assert_allclose(bench.e["plate"][0], [0.65, 0.05, 0.9], atol=1e-4)
+    np.testing.assert_allclose(bench.e["plate_v"][0], 0.0, atol=2e-3)
+    np.testing.assert_allclose(bench.e["quat"][0], flight.uav, atol=1e-5)
+    assert bench.e["plate_valid"][0] == 1
+    assert bench.e["plate_age"][0] < 0.034
+    flight.fly(600, seen=False)
+    assert bench.e["plate_valid"][0] == 0
+    assert bench.e["plate_age"][0] > 0.5
+
+
+def test_push_that_is_known_moves_the_plate_at_once(bench):
+    """Half a second of 0.5 m/s² that no image could tell of in time; without being told, the plate stays behind."""
+    errors = {}
+    for told in (True, False):
+        flight = Flight(type(bench)(bench.plan))
+        flight.fly(300)
+        still = flight.at.copy()
+        flight.fly(100, push=[0.5, 0.0, 0.0] if told else [0.0] * 3, seen=False, acceleration=[0.5, 0.0, 0.0])
+        estimate = flight.bench.e
+        errors[told] = np.linalg.norm(estimate["plate"][0] - flight.at)
+        assert flight.at[0] - still[0] == pytest.approx(0.5 * 0.5 * 0.1**2, rel=0.02)
+        assert estimate["plate_a"][0, 0] == pytest.approx(0.5 if told else 0.0, abs=0.02)
+        assert estimate["plate_v"][0, 0] == pytest.approx(0.05 if told else 0.0, abs=3e-3)
+    assert errors[True] < 3e-4 < 1.5e-3 < errors[False]
+
+
+def test_plate_that_moves_is_known_with_its_speed_and_turns_with_the_gyros(bench):
+    flight = Flight(bench, velocity=(0.05, -0.08, 0.02))
+    bench.m["uav_rate"] = 0.0
+    flight.fly(1000)
+    np.testing.assert_allclose(bench.e["plate"][0], flight.at - 1e-3 * flight.velocity, atol=1e-3)
+    np.testing.assert_allclose(bench.e["plate_v"][0], flight.velocity, atol=6e-3)
+    np.testing.assert_array_equal(bench.e["omega"], 0.0)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_drag_brakes_along_the_deck_and_not_upwards(bench, axis):
+    p, s, speed = bench.told["estimate"], bench.kept["refer"], np.eye(3)[axis]
+    s["a"], s["v"], p["launch"] = 0.0, 0.4 * speed, 0.5 * speed
+    rate = p["drag"][0] / p["mass"][0] if axis < 2 else 0.0
+    np.testing.assert_allclose(push(bench, LAUNCH, True), -rate * 0.4 * speed)
+    np.testing.assert_allclose(push(bench, LAUNCH, False), -rate * 0.5 * speed)
+
+
+def test_images_that_show_the_plate_in_its_place_end_the_row_of_those_that_do_not(bench):
+    s, level = bench.kept["estimate"], np.array([1.0, 0.0, 0.0, 0.0])
+    for offset, far in ((0.02, 1), (0.02, 2), (0.005, 0), (0.02, 1)):
+        see(bench, np.array([0.0, offset, 0.0]), level, level)
+        look_at_grip(bench.m[0], bench.told["estimate"][0], s[0])
+        assert s["grip_far"][0] == far

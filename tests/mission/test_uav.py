@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from armland.mission.table.phases import LINK, UAV
 from armland.mission.uav import command_uav
 from armland.records import UavMode
 from armland.rotations import from_rotation_vector, matrix, multiply
@@ -135,3 +136,196 @@ def test_hinge_is_freed_of_force_by_more_thrust_where_the_arm_lifts(cradle_bench
     p = bench.told["act"]["uav"]
     assert bench.kept["act"]["hover"][0] == thrust
     assert bench.kept["act"]["integral"][0, 2] == pytest.approx(thrust / p["mass"][0] - 9.81)
+
+
+def as_uav(bench, what, ticks=1, **row):
+    """Command what a phase whose UAV does `what` commands; returns the thrust."""
+    phase = bench.enter("guide")
+    phase["uav"] = UAV.index(what)
+    for name, value in row.items():
+        phase[name] = value
+    for _ in range(ticks):
+        command_uav(phase, LEVEL, bench.b)
+        bench.m["tick"] += 1
+    return float(bench.c["thrust"][0])
+
+
+def axis_of(bench):
+    """Where the body's z axis shall point (3,), deck."""
+    return matrix(bench.kept["act"]["q_d"][0].copy())[:, 2]
+
+
+@pytest.mark.parametrize("link", LINK)
+def test_what_a_uav_without_link_does_is_said_by_the_phase(bench, link):
+    modes = {"guided": "GUIDED", "held": "HELD", "landed": "LANDED", "caught": "CAUGHT", "hinged": "HINGED"}
+    as_uav(bench, "level", link=LINK.index(link))
+    assert bench.c["uav_mode"][0] == getattr(UavMode, modes[link])
+
+
+def test_level_uav_keeps_the_thrust_it_has_and_its_rotors_stop_where_it_shall_be_off(bench):
+    bench.kept["act"]["thrust"], bench.kept["act"]["hover"] = 3.3, 5.0
+    assert as_uav(bench, "level") == 3.3
+    assert as_uav(bench, "off") == 0.0
+    assert bench.c["uav_mode"][0] == UavMode.OFF
+    assert bench.kept["act"]["thrust"][0] == 0.0
+
+
+def test_level_uav_keeps_its_heading(bench):
+    bench.told["act"]["uav"]["heading"] = 0.7
+    as_uav(bench, "autonomous")
+    np.testing.assert_allclose(bench.c["uav_quat"][0], from_rotation_vector(np.array([0.0, 0.0, 0.7])), atol=1e-12)
+
+
+@pytest.mark.parametrize(("held", "thrust"), [(1, 1.7), (0, 2.35)])
+def test_hinged_uav_gives_what_the_law_made_of_it_else_what_the_hinge_is_told(bench, held, thrust):
+    bench.c["thrust"], bench.told["act"]["uav"]["hinged"] = 1.7, 2.35
+    assert as_uav(bench, "hinged", held=held) == thrust
+
+
+@pytest.mark.parametrize("v", [(0.6, 0.0, 0.0), (0.3, -0.4, 0.0)])
+def test_uav_that_the_arm_runs_up_with_holds_its_own_drag(bench, v):
+    """Its thrust, as strong as before, along weight and drag together: at a constant speed the hinge is free of force."""
+    p = bench.told["act"]["uav"][0]
+    bench.kept["act"]["thrust"], bench.e["v"] = 5.1, v
+    assert as_uav(bench, "run_up") == 5.1
+    wanted = np.array([p["drag"] * v[0], p["drag"] * v[1], p["weight"]])
+    np.testing.assert_allclose(axis_of(bench), wanted / np.linalg.norm(wanted), atol=1e-12)
+
+
+def flying_on(bench, velocity, fly_on=0):
+    """A UAV that begins to fly on at the bench's tick: at rest in its frame, level, its centre of mass at (0.1, 0.2, 1.0)."""
+    p, cm = bench.told["act"]["uav"], np.array([0.1, 0.2, 1.0])
+    p["launch"], p["fly_on"], p["period"] = velocity, fly_on, 5
+    bench.e["quat"][0], bench.e["plate"], bench.e["plate_v"] = LEVEL, cm + p["lever"][0], velocity
+    return cm
+
+
+def test_uav_flies_on_from_where_it_was_let_go_at_the_speed_that_it_was_given(bench):
+    """On its way it is tilted against its drag alone; behind its way it is tilted on, ahead of it back."""
+    velocity = np.array([0.4, -0.3, 0.0])
+    cm, p, start = flying_on(bench, velocity), bench.told["act"]["uav"][0], 1000
+    as_uav(bench, "cruise")
+    np.testing.assert_allclose(bench.kept["act"]["anchor"][0], cm)
+    leans = {}
+    for ahead in (0.0, 0.05, -0.05):
+        bench.kept["act"]["integral"], bench.m["tick"] = 0.0, start + 500
+        bench.e["plate"] = cm + p["lever"] + velocity * 0.5 + ahead * np.array([0.8, -0.6, 0.0])
+        thrust = as_uav(bench, "cruise")
+        leans[ahead] = axis_of(bench)
+        if ahead == 0.0:
+            np.testing.assert_allclose(thrust * axis_of(bench)[2], p["weight"], rtol=1e-3)
+    drag = p["drag"] * velocity / p["weight"]
+    np.testing.assert_allclose(leans[0.0][:2] / leans[0.0][2], drag[:2], rtol=1e-6)
+    along = {k: v[:2] / v[2] @ [0.8, -0.6] for k, v in leans.items()}
+    assert along[0.05] < along[0.0] < along[-0.05]
+
+
+def test_uav_that_flies_on_keeps_to_its_period_once_it_has_begun(bench):
+    """At once where it is let go, whatever the tick; then as often as the station is kept."""
+    cm = flying_on(bench, np.array([0.4, 0.0, 0.0]))
+    bench.m["tick"] = 1003
+    as_uav(bench, "cruise")
+    assert bench.kept["act"]["cruising"][0] == 1003
+    first = bench.c["uav_quat"][0].copy()
+    bench.e["plate"][0] = cm + 1.0
+    for tick, changed in ((1004, False), (1005, True)):
+        bench.m["tick"] = tick
+        as_uav(bench, "cruise")
+        assert (not np.array_equal(bench.c["uav_quat"][0], first)) == changed
+    np.testing.assert_allclose(bench.kept["act"]["anchor"][0], cm)
+
+
+def test_uav_too_heavy_to_hover_flies_on_with_all_it_has_seen_or_not(bench):
+    velocity, p = np.array([0.0, -0.5, 0.0]), bench.told["act"]["uav"][0]
+    flying_on(bench, velocity, fly_on=1)
+    for valid in (1, 0):
+        bench.e["plate_valid"] = valid
+        assert as_uav(bench, "cruise", link=LINK.index("guided")) == p["thrust_max"]
+        assert bench.c["uav_mode"][0] == UavMode.GUIDED
+        wanted = np.array([0.0, -0.5 * p["drag"], p["weight"]])
+        np.testing.assert_allclose(axis_of(bench), wanted / np.linalg.norm(wanted), atol=1e-12)
+
+
+def test_uav_that_flies_on_and_is_not_seen_hovers_by_itself(bench):
+    flying_on(bench, np.array([0.4, 0.0, 0.0]))
+    bench.e["plate_valid"] = 0
+    as_uav(bench, "cruise")
+    assert bench.c["uav_mode"][0] == UavMode.AUTONOMOUS
+
+
+@pytest.mark.parametrize(("behind", "share"), [(0.0, 1.0), (0.25, 0.75), (0.5, 0.5), (1.5, 0.0), (-1.0, 1.0)])
+def test_ramp_slows_down_as_the_hinge_falls_behind_what_it_must_carry(bench, behind, share):
+    """By the slack's share: at half of it half as fast, at all of it not at all; and never faster than its rate."""
+    p, kept = bench.told["act"]["uav"][0], bench.kept["act"]
+    kept["hover"], kept["thrust"], bench.e["thrust"] = 5.0, 4.0, 3.0
+    bench.e["hinge_force"][0, 2] = 0.4 * p["weight"] - behind * p["force_slack"]
+    down = 4.0 - as_uav(bench, "ramp", share=0.5, link=LINK.index("held"))
+    assert down == pytest.approx(share * p["thrust_rate"] * 1e-3)
+
+
+@pytest.mark.parametrize(("link", "thrust", "step"), [("held", 1.0, 1.0), ("landed", 4.0, -1.0)])
+def test_ramp_upwards_and_one_that_nobody_must_take_over_wait_for_nothing(bench, link, thrust, step):
+    p, kept = bench.told["act"]["uav"][0], bench.kept["act"]
+    kept["hover"], kept["thrust"], bench.e["thrust"], bench.e["hinge_force"] = 5.0, thrust, 3.0, -50.0
+    gained = as_uav(bench, "ramp", share=0.5, link=LINK.index(link)) - thrust
+    assert gained == pytest.approx(step * p["thrust_rate"] * 1e-3)
+
+
+def test_ramp_ends_where_its_share_says_and_stays_there(bench):
+    kept = bench.kept["act"]
+    kept["hover"], kept["thrust"] = 5.0, 2.5001
+    assert as_uav(bench, "ramp", ticks=50, share=0.5, link=LINK.index("landed")) == 2.5
+
+
+@pytest.mark.parametrize(("share", "above", "off"), [(0.0, -0.001, True), (0.0, 0.5, False), (0.01, -0.001, False)])
+def test_rotors_stop_only_at_the_end_of_a_ramp_to_nothing(bench, share, above, off):
+    bench.kept["act"]["thrust"] = bench.told["act"]["uav"]["thrust_min"] + above
+    thrust = as_uav(bench, "ramp", share=share, link=LINK.index("landed"))
+    assert (bench.c["uav_mode"][0] == UavMode.OFF) == off
+    assert (thrust == 0.0) == off
+
+
+@pytest.mark.parametrize(("force", "step"), [(0.5, None), (100.0, 1.0), (-100.0, -1.0)])
+def test_thrust_that_frees_the_hinge_changes_no_faster_than_a_ramp(bench, force, step):
+    p = bench.told["act"]["uav"][0]
+    bench.kept["act"]["thrust"], bench.e["hinge_force"][0, 2] = 4.0, force
+    wanted = (p["balance_rate"] * force if step is None else step * p["thrust_rate"]) * 1e-3
+    assert as_uav(bench, "balance") - 4.0 == pytest.approx(wanted)
+
+
+def test_thrust_that_frees_the_hinge_stays_within_what_the_rotors_give(bench):
+    p, kept = bench.told["act"]["uav"][0], bench.kept["act"]
+    for force, bound in ((100.0, "thrust_max"), (-100.0, "thrust_min")):
+        kept["thrust"], bench.e["hinge_force"][0, 2] = p[bound], force
+        assert as_uav(bench, "balance") == p[bound]
+
+
+def test_thrust_that_carries_the_weight_is_learnt_with_its_time_constant(bench):
+    """One period of 5 ms behind 1 s: of what the integral says beyond what was known, 0.5 %."""
+    at_station(bench)
+    kept, p = bench.kept["act"], bench.told["act"]["uav"][0]
+    kept["hover"], kept["integral"] = 4.0, [0.0, 0.0, 0.5]
+    ask(bench, "guide")
+    wanted = p["mass"] * (9.81 + kept["integral"][0, 2])
+    assert kept["hover"][0] - 4.0 == pytest.approx(0.005 / p["hover_s"] * (wanted - 4.0), rel=1e-9)
+
+
+def test_uav_that_comes_nearer_is_braked_in_time(bench):
+    """Towards its station at the speed that is wanted of it, it is left alone; faster, it is tilted back."""
+    p, leans = bench.told["act"]["uav"][0], {}
+    for speed in (p["k_position"] * 0.1, 0.3):
+        at_station(bench, (-0.1, 0.0, 0.0))
+        bench.e["plate_v"], bench.kept["act"]["integral"] = [speed, 0.0, 0.0], 0.0
+        ask(bench, "guide")
+        leans[speed] = axis_of(bench)[0]
+    assert leans[p["k_position"] * 0.1] == pytest.approx(0.0, abs=1e-9)
+    assert leans[0.3] < -0.01
+
+
+def test_station_is_kept_against_the_decks_own_acceleration(bench):
+    """On a deck that accelerates along x the UAV must lean forwards by a/g to stay above its place."""
+    bench.board["environment"]["base_a"] = [0.8, 0.0, 0.0]
+    at_station(bench)
+    ask(bench, "guide")
+    axis = axis_of(bench)
+    assert axis[0] / axis[2] == pytest.approx(0.8 / 9.81)

@@ -8,9 +8,10 @@ import pinocchio as pin
 import pytest
 
 from armland.models.arm import ArmModel
-from armland.models.description import ASSETS, Tool
+from armland.models.description import ASSETS
+from armland.scenario.arm import Tool
 
-TOOL = Tool(sensor_mass=0.25, sensor_length=0.0504, tool_mass=0.30, tool_com=0.025, length=0.1064)
+TOOL = Tool(sensor_mass_kg=0.25, sensor_length_m=0.0504, tool_mass_kg=0.30, tool_com_m=0.025, length_m=0.1064)
 
 
 def text(values):
@@ -86,12 +87,12 @@ class Twin:
         if tool is not None:
             solid = np.eye(3) * 0.03**2
             for mass, com in (
-                (tool.sensor_mass, 0.5 * tool.sensor_length),
-                (tool.tool_mass, tool.sensor_length + tool.tool_com),
+                (tool.sensor_mass_kg, 0.5 * tool.sensor_length_m),
+                (tool.tool_mass_kg, tool.sensor_length_m + tool.tool_com_m),
             ):
                 body = pin.Inertia(mass, np.array([0.0, 0.0, com]), mass * solid)
                 self.model.appendBodyToJoint(at.parentJoint, body, at.placement)
-            placement = at.placement * pin.SE3(np.eye(3), np.array([0.0, 0.0, tool.length]))
+            placement = at.placement * pin.SE3(np.eye(3), np.array([0.0, 0.0, tool.length_m]))
         self.frame = self.model.addFrame(pin.Frame("point", at.parentJoint, 0, placement, pin.FrameType.OP_FRAME))
         self.data = self.model.createData()
 

@@ -5,11 +5,12 @@ import pytest
 
 from armland.errors import ConfigurationError, ModelError
 from armland.models.arm import ArmModel
-from armland.models.description import ASSETS, Tool, frame_names, read_spec
+from armland.models.description import ASSETS, frame_names, read_spec
+from armland.scenario.arm import Tool
 
 LWR = (ASSETS / "lwr4.xml").read_text("utf-8")
 FLANGE = '<site name="flange" pos="0 0 0"/>'
-TOOL = Tool(sensor_mass=0.25, sensor_length=0.05, tool_mass=0.3, tool_com=0.02, length=0.12)
+TOOL = Tool(sensor_mass_kg=0.25, sensor_length_m=0.05, tool_mass_kg=0.3, tool_com_m=0.02, length_m=0.12)
 
 
 @pytest.fixture
@@ -52,7 +53,7 @@ def test_site_keeps_its_orientation_however_it_is_written(load, orientation, too
     p, R = at(load(LWR, "flange", suffix=".xml"), q)
     position, rotation = at(load(LWR.replace(FLANGE, turned), "flange", tool, suffix=".xml"), q)
     np.testing.assert_allclose(rotation[:, 2], R[:, 0], atol=1e-12)
-    np.testing.assert_allclose(position, p + (0.0 if tool is None else tool.length) * R[:, 0], atol=1e-12)
+    np.testing.assert_allclose(position, p + (0.0 if tool is None else tool.length_m) * R[:, 0], atol=1e-12)
 
 
 def test_tool_moves_the_controlled_point_out_along_the_frame(bench):
@@ -60,7 +61,7 @@ def test_tool_moves_the_controlled_point_out_along_the_frame(bench):
     q = np.linspace(-0.5, 0.5, 6)
     p, R = at(ArmModel.load(path, "tip"), q)
     position, rotation = at(ArmModel.load(path, "tip", TOOL), q)
-    np.testing.assert_allclose(position, p + TOOL.length * R[:, 2], atol=1e-12)
+    np.testing.assert_allclose(position, p + TOOL.length_m * R[:, 2], atol=1e-12)
     np.testing.assert_allclose(rotation, R, atol=1e-12)
 
 
@@ -73,8 +74,8 @@ def test_tool_weighs_on_the_joints(bench):
     at(tooled, q)
     added = np.zeros(6)
     for mass, along in (
-        (TOOL.sensor_mass, 0.5 * TOOL.sensor_length),
-        (TOOL.tool_mass, TOOL.sensor_length + TOOL.tool_com),
+        (TOOL.sensor_mass_kg, 0.5 * TOOL.sensor_length_m),
+        (TOOL.tool_mass_kg, TOOL.sensor_length_m + TOOL.tool_com_m),
     ):
         lever = along * R[:, 2]
         linear = bare.jacobian[:3] - np.cross(lever, bare.jacobian[3:], axis=0)

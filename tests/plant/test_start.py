@@ -1,5 +1,7 @@
 """What the plant refuses before anything moves, each beside what it accepts; the contacts are those of the simulation itself."""
 
+from itertools import product
+
 import mujoco
 import numpy as np
 import pytest
@@ -27,10 +29,27 @@ def refused(**place):
 def accepted(**place):
     plant = plant_of(**place)
     check_start(plant.scenario, plant.scene, HOME)
+    return plant
 
 
-def test_shipped_scenario_is_accepted():
-    accepted()
+def force_at(plant, pivot):
+    """Force between arm and UAV, N, with the UAV's pivot there, level."""
+    s, d = plant.scene, plant.data
+    d.qpos[s.uav_qpos[:3]] = np.array(pivot) - s.lever
+    d.qpos[s.uav_qpos[3:]] = [1.0, 0.0, 0.0, 0.0]
+    mujoco.mj_forward(s.model, d)
+    return np.linalg.norm(d.sensordata[s.sensor["arm_uav_force"] :][:3])
+
+
+def test_in_the_shipped_scenario_the_uav_touches_nothing_wherever_it_starts():
+    plant = accepted()
+    plant.connect()
+    place = plant.scenario.place
+    middle = np.array(place.catch_m) + [0.0, 0.0, place.start_above_m]
+    corners = [middle + np.array(c) * place.start_offset_m for c in product((-1.0, 1.0), repeat=3)]
+    assert [force_at(plant, corner) for corner in corners] == [0.0] * 8
+    # Among the links of the waiting arm it would.
+    assert force_at(plant, np.array(place.catch_m) - [0.0, 0.0, 0.3]) > 0.0
 
 
 def test_hint_holds_and_its_ends_are_the_last_that_do():

@@ -156,7 +156,7 @@ def test_disk_that_fills_up_ends_no_flight_and_leaves_all_full_blocks(tmp_path: 
             fill_tick(recorder.rows(1), number)
             recorder.add(1)
             assert (recorder.failure is not None) == (number >= 7)
-    assert "No space left on device; run.mcap.part beside it holds the first 4 ticks" in str(recorder.failure)
+    assert "No space left on device; run.mcap.part holds the first 4 ticks" in str(recorder.failure)
     assert recorder.ticks["truth"]["tick"].tolist() == list(range(30))
     assert (tmp_path / "run.mcap").read_bytes() == earlier
     log = read_log(tmp_path / "run.mcap.part")
@@ -168,8 +168,9 @@ def test_disk_that_is_full_at_the_end_is_told(tmp_path: Path) -> None:
         recorder.rows(1)
         recorder.add(1)
         recorder._file._file = _FullDisk(recorder._file._file, room=0)
-    assert "No space left on device" in str(recorder.failure)
+    assert "No space left on device; no tick of it is kept" in str(recorder.failure)
     assert len(recorder.ticks) == 1
+    assert [*tmp_path.iterdir()] == []
 
 
 class _Piecewise:

@@ -244,7 +244,10 @@ def test_inertia_of_a_cloud_of_masses_is_accepted_and_what_breaks_the_triangle_i
 
 def test_flat_plate_is_a_rigid_body() -> None:
     """Its moments meet the triangle's bound exactly."""
-    INERTIA.validate_python(((0.006, 0.0, 0.0), (0.0, 0.007, 0.0), (0.0, 0.0, 0.013)))
+    rows = ((0.006, 0.0, 0.0), (0.0, 0.007, 0.0), (0.0, 0.0, 0.013))
+    assert INERTIA.validate_python(rows) == rows
+    with pytest.raises(ValidationError, match="no rigid body"):
+        INERTIA.validate_python((*rows[:2], (0.0, 0.0, 0.01301)))
 
 
 @pytest.mark.parametrize(

@@ -100,18 +100,20 @@ def test_numbers_of_a_table_that_exclude_each_other_are_refused(case) -> None:
 
 
 def test_tilted_gravity_and_that_of_the_moon_are_accepted() -> None:
-    Environment(gravity_mps2=(4.0, 0.0, -8.9))
-    Environment(gravity_mps2=(0.0, 0.0, -1.62))
+    for gravity in ((4.0, 0.0, -8.9), (0.0, 0.0, -1.62)):
+        assert Environment(gravity_mps2=gravity).gravity_mps2 == gravity
+    with pytest.raises(ValidationError):
+        Environment(gravity_mps2=(0.0, 0.0, 1.62))
 
 
 THRESHOLDS = [
-    ({"bounds": {"lost_offset_m": 0.004}}, "bounds.lost_offset_m = 0.004 must exceed bounds.align_offset_m = 0.004"),
-    ({"bounds": {"pull_seen_n": 0.9}}, "bounds.pull_seen_n = 0.9 must be below bounds.pull_test_n = 0.8"),
+    ({"bounds": {"lost_offset_m": 0.004}}, "bounds: align_offset_m = 0.004 must be below lost_offset_m = 0.004"),
+    ({"bounds": {"pull_seen_n": 0.9}}, "bounds: pull_seen_n = 0.9 must be below pull_test_n = 0.8"),
     (
         {"bounds": {"share_carried": 0.5}},
         "bounds.share_carried = 0.5 must be below 1 - control.thrust.carry_share = 0.5",
     ),
-    ({"place": {"standoff_m": 0.3}}, "place.standoff_m = 0.3 must be below place.wait_below_m = 0.2"),
+    ({"place": {"standoff_m": 0.3}}, "place: standoff_m = 0.3 must be below wait_below_m = 0.2"),
     (
         {"link": {"rate_hz": 300}},
         "link.rate_hz = 300 does not divide run.rate_hz = 1000; nearest that do: 125, 200, 250",

@@ -80,6 +80,28 @@ def test_listed_equivalents_are_no_survivors_and_must_not_be_noticed(tree, wrong
     ]
 
 
+HIDDEN = """
+import sys
+sys.path.insert(0, {tools!r})
+from interpreted import interpret
+interpret()
+import numpy as np
+kept = np.zeros(1, np.dtype([("flags", "i8"), ("sum", "f8", (2,)), ("part", np.dtype([("max", "f8")]))]))
+record = kept[0]
+record.flags |= 4
+record.sum[1] += 2.0
+record.part.max = 3.0
+print(kept["flags"][0], kept["sum"][0, 1], record.part.max, record.dtype.names)
+"""
+
+
+def test_fields_are_found_in_plain_python_whatever_else_numpy_calls_so() -> None:
+    """Without Numba a record of NumPy has `flags`, `sum` and the like of its own."""
+    code = HIDDEN.format(tools=str(TOOLS))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=False)
+    assert done.stdout.split() == ["4", "2.0", "3.0", "('flags',", "'sum',", "'part')"], done.stderr
+
+
 def test_sample_is_the_same_for_the_same_seed() -> None:
     samples = [run(ROOT, "--list", "--only", "control", "--count", "20", "--seed", s).stdout for s in ("7", "7", "8")]
     assert len(samples[0].splitlines()) == 20

@@ -1,3 +1,5 @@
+import os
+import signal
 from pathlib import Path
 
 import mujoco
@@ -50,7 +52,7 @@ def test_frames_do_not_depend_on_those_before(ball) -> None:
 def test_next_backend_is_tried(ball, monkeypatch) -> None:
     drawn(ball, [0.0])
     working = opengl.backends()
-    monkeypatch.setattr(module, "backends", lambda: ["disable", *working])
+    monkeypatch.setattr(opengl, "backends", lambda: ["disable", *working])
     assert frames(ball, [0.0], 80, 60, "eye").any()
 
 
@@ -88,3 +90,22 @@ def test_stream_without_opengl_says_the_same(ball, monkeypatch) -> None:
         stream.__enter__()
     assert stream._folder is not None
     assert not Path(stream._folder.name).exists()
+
+
+def test_picture_that_never_comes_is_an_error(ball, monkeypatch) -> None:
+    drawn(ball, [0.0])
+    with FrameStream(ball, 160, 120, "eye") as stream:
+        monkeypatch.setattr(module, "TIMEOUT_S", 0.2)
+        os.kill(stream._child.pid, signal.SIGSTOP)
+        with pytest.raises(PictureError, match="has ended"):
+            stream.draw([0.0])
+
+
+def test_coloured_pictures_keep_their_colours(ball) -> None:
+    grey = drawn(ball, [0.0])[0]
+    with FrameStream(ball, 160, 120, "eye", coloured=True) as stream:
+        picture = stream.draw([0.0])
+    assert picture.shape == (*grey.shape, 3)
+    middle = picture[60, 80].astype(int)
+    assert middle[1] == pytest.approx(int(grey[60, 80]), abs=2)
+    assert max(middle[0], middle[2]) < 5

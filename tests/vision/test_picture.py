@@ -51,12 +51,6 @@ def test_picture_has_its_size_and_shows_the_pose(ball, tmp_path) -> None:
     assert rows.mean() == pytest.approx(59.5, abs=1.0)
 
 
-def test_flags_of_the_visualiser_can_be_shown(ball, tmp_path) -> None:
-    plain = drawn(ball, [0.0], tmp_path / "plain.png", 160, 120)
-    joint = drawn(ball, [0.0], tmp_path / "joint.png", 160, 120, show=["joint", "transparent"])
-    assert np.abs(plain - joint).max() > 0.1
-
-
 def test_leftovers_of_another_backend_do_not_matter(ball, tmp_path, monkeypatch) -> None:
     drawn(ball, [0.0], tmp_path / "first.png", 80, 60)
     monkeypatch.setenv("PYOPENGL_PLATFORM", "no such platform")
@@ -105,7 +99,6 @@ def test_backend_is_chosen_where_none_is_asked_for(monkeypatch) -> None:
         ([0.0], {"camera": "front"}, "no camera 'front'; its cameras are: overview"),
         ([0.0], {"width": 0}, "0 x 960 pixels"),
         ([0.0], {"height": 5000}, "1280 x 5000 pixels.*1 to 4096"),
-        ([0.0], {"show": ["joint", "ghosts"]}, "unknown ghosts; known are: .*joint"),
     ],
 )
 def test_what_the_model_does_not_have_is_refused(ball, tmp_path: Path, qpos, options, says: str) -> None:

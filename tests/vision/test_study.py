@@ -4,8 +4,19 @@ import pytest
 from armland.errors import PictureError
 from armland.plant.noise import stream
 from armland.vision.imaging import IDEAL, Calibration, Imaging
-from armland.vision.rows import Row, errors_of, model_errors, rows
-from armland.vision.study import ERROR, SPEED_MPS, SWEEP_RAD_S, Camera, Study, draw_motion, marker_study
+from armland.vision.study import (
+    ERROR,
+    SPEED_MPS,
+    SWEEP_RAD_S,
+    Camera,
+    Row,
+    Study,
+    draw_motion,
+    errors_of,
+    marker_study,
+    model_errors,
+    rows,
+)
 
 pytest.importorskip("cv2")
 

@@ -7,7 +7,12 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-COMPILING = "Compiling the control laws: this happens once and takes about half a minute."
+COMPILING = "Compiling the control laws: this happens once and takes less than a minute."
+
+UNKEPT = (
+    "Compiling as it flies, which takes a minute or two each time: nothing compiled can be kept here. "
+    "To keep it, let NUMBA_CACHE_DIR name a folder that can be written to."
+)
 
 
 def diagnostics() -> Console:
@@ -15,18 +20,22 @@ def diagnostics() -> Console:
     return Console(stderr=True)
 
 
-def compile_first(console: Console) -> None:
-    """Compile what a flight needs, where it is not there yet, and say so and how far that is."""
-    from armland.compiled.warming import is_warm, warm
+def ready() -> Console:
+    """Standard error, when what a flight needs is compiled; where it is not there yet, says so and how far that is."""
+    from armland.compiled.warming import is_warm, place, warm
 
+    console = diagnostics()
+    if place() is None:
+        console.print(UNKEPT, highlight=False)
     if is_warm():
-        return
+        return console
     console.print(COMPILING, highlight=False)
     from armland.experiments.warming import pieces
 
     with progress_bar(console) as bar:
         task = bar.add_task("compiled")
         warm(pieces(), lambda done, total: bar.update(task, completed=done, total=total))
+    return console
 
 
 def progress_bar(console: Console) -> Progress:
@@ -41,16 +50,18 @@ def progress_bar(console: Console) -> Progress:
     )
 
 
-def reported(bar: Progress) -> Callable[[str, int, int], None]:
-    """A progress callback that makes one bar per name, when the name is first heard of."""
+@contextmanager
+def reported(console: Console) -> Iterator[Callable[[str, int, int], None]]:
+    """Takes name, done and total: one bar per name, made when the name is first heard of."""
     tasks: dict[str, Any] = {}
+    with progress_bar(console) as bar:
 
-    def report(name: str, done: int, total: int) -> None:
-        if name not in tasks:
-            tasks[name] = bar.add_task(name, total=total)
-        bar.update(tasks[name], completed=done, total=total)
+        def report(name: str, done: int, total: int) -> None:
+            if name not in tasks:
+                tasks[name] = bar.add_task(name, total=total)
+            bar.update(tasks[name], completed=done, total=total)
 
-    return report
+        yield report
 
 
 @contextmanager

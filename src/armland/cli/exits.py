@@ -11,20 +11,15 @@ from armland.cli.streams import outlets
 from armland.errors import ArmlandError, ConfigurationError, LogError
 
 SUCCEEDED = 0
-FAILED = 1
-"""It ran, and the UAV did not land, or a verdict does not hold."""
-REFUSED = 2
-"""Bad input; nothing moved and nothing was written."""
-BROKEN = 3
-"""Something broke: the machine, a disk, or armland itself."""
-STOPPED = 130
-"""By Ctrl-C, as shells have it."""
+FAILED = 1  # It ran, and the UAV did not land, or a verdict does not hold
+REFUSED = 2  # Bad input; nothing moved and nothing was written
+BROKEN = 3  # Something broke: the machine, a disk, or armland itself
+STOPPED = 130  # By Ctrl-C, as shells have it
 
 EXPLAINED = "Exit code: 0 if it succeeds, 1 if not, 2 for bad input, 3 if something broke, 130 if it was stopped."
 """For the help of commands."""
 
-TRACEBACK = "ARMLAND_TRACEBACK"
-"""Variable that names a file into which the details of an unexpected error go."""
+TRACEBACK = "ARMLAND_TRACEBACK"  # Variable that names a file into which the details of an unexpected error go
 
 
 class Judged(SystemExit):

@@ -1,6 +1,7 @@
 """Arguments and options that several commands share, and the scenario that they make together."""
 
 import inspect
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -8,89 +9,111 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from armland.errors import ConfigurationError
+from armland.scenario.tables import update
+
+
+def parse_settings(settings: list[str]) -> dict[str, Any]:
+    """Nested values of settings such as `place.catch_m=[0.6, 0.0, 0.86]`; a later one replaces an earlier one.
+
+    Raises:
+        ConfigurationError: no key, or a value that is not TOML; all of them.
+    """
+    data: dict[str, Any] = {}
+    problems = []
+    for text in settings:
+        try:
+            update(data, _parse(text))
+        except ConfigurationError as e:
+            problems.append(str(e))
+    if problems:
+        raise ConfigurationError("\n  ".join(problems))
+    return data
+
+
+def _parse(text: str) -> dict[str, Any]:
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip():
+        raise ConfigurationError(f"--set {text!r}: expected KEY=VALUE, e.g. place.catch_m='[0.6, 0.0, 0.86]'")
+    try:
+        found = tomllib.loads(f"{key} = {value}")
+    except tomllib.TOMLDecodeError as e:
+        raise ConfigurationError(
+            f"--set {text!r}: {value.strip()!r} is not a value of TOML, or {key.strip()!r} no dotted key ({e}); text needs "
+            f"quotes of its own, e.g. title='\"calm\"'"
+        ) from e
+    if len(found) != 1:
+        raise ConfigurationError(f"--set {text!r}: one key and one value; repeat --set for more")
+    return found
+
 
 if TYPE_CHECKING:
     from armland.scenario import Scenario
 
+Parameter = tuple[Any, Any]  # Annotation and default of a parameter of a command
+
 SCENARIO_HELP = "Scenario (TOML), or the name of one that comes with armland."
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print the result alone on standard output, as JSON.")]
-Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")]
-Settings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set", metavar="KEY=VALUE", help="Replace a value of the scenario: dotted key, value as in TOML. Repeatable."
-    ),
-]
-Seed = Annotated[
-    int | None,
-    typer.Option(min=0, help="Seed of every random stream, the scenario's if absent; the first of a campaign."),
-]
-Law = Annotated[
-    str | None,
-    typer.Option(metavar="LAW", help="Law of the UAV: classical, paper, exact, or your own as FILE.py:FUNCTION."),
-]
+
+def option(kind: Any, words: str, *names: str, default: Any = None, **more: Any) -> Parameter:
+    """An option with the help `words`; `names` where it is not called as its parameter, `more` as for `typer.Option`."""
+    return Annotated[kind, typer.Option(*names, help=words, **more)], default
 
 
-def out(folder: str) -> Any:
-    """The option `--out` with its default."""
-    return Annotated[Path, typer.Option(help=f"Folder for figures, logs and results; out/{folder} if absent.")]
+def argument(kind: Any, words: str, default: Any = None, **more: Any) -> Parameter:
+    """An argument with the help `words`; `more` as for `typer.Argument`."""
+    return Annotated[kind, typer.Argument(help=words, **more)], default
 
 
-def scenario(name: str) -> tuple[Any, str]:
+def scenario(name: str) -> Parameter:
     """The argument SCENARIO, `name` if absent."""
-    return Annotated[str, typer.Argument(metavar="SCENARIO", help=SCENARIO_HELP)], name
+    return argument(str, SCENARIO_HELP, name, metavar="SCENARIO")
 
 
-MADE: dict[str, tuple[Any, Any]] = {
-    "seed": (Seed, None),
-    "settings": (Settings, None),
-    "arm": (
-        Annotated[
-            Path | None,
-            typer.Option(help="Another serial arm: URDF or MJCF file. Its pose at the start is searched for."),
-        ],
-        None,
-    ),
-    "ee": (
-        Annotated[
-            str | None,
-            typer.Option("--ee", help="Link, body or site of the arm that carries the tool, z outwards."),
-        ],
-        None,
-    ),
+def out(folder: str) -> Parameter:
+    """The option `--out` with its default."""
+    words = f"Folder for figures, logs and results; out/{folder} if absent."
+    return option(Path, words, default=None if folder == "MISSION" else Path("out") / folder)
+
+
+AS_JSON = option(bool, "Print the result alone on standard output, as JSON.", "--json", default=False)
+SEED = option(int | None, "Seed of every random stream, the scenario's if absent; the first of a campaign.", min=0)
+LAW = option(str | None, "Law of the UAV: classical, paper, exact, or your own as FILE.py:FUNCTION.", metavar="LAW")
+SETTINGS = option(
+    list[str] | None,
+    "Replace a value of the scenario: dotted key, value as in TOML. Repeatable.",
+    "--set",
+    metavar="KEY=VALUE",
+)
+
+MADE = {
+    "seed": SEED,
+    "settings": SETTINGS,
+    "arm": option(Path | None, "Another serial arm: URDF or MJCF file. Its pose at the start is searched for."),
+    "ee": option(str | None, "Link, body or site of the arm that carries the tool, z outwards.", "--ee"),
 }
 """Options that a scenario is made by, see `load`."""
 
-SHOWN: dict[str, tuple[Any, Any]] = {"as_json": (AsJson, False), "figures": (Figures, True)}
+SHOWN = {"as_json": AS_JSON, "figures": option(bool, "Draw the figures.", "--figures/--no-figures", default=True)}
 """Options that say how a result is shown."""
 
-FLOWN: dict[str, tuple[Any, Any]] = {
-    "law": (Law, None),
-    "seeds": (
-        Annotated[int, typer.Option(min=1, max=1_000_000, help="Fly this many seeds and print how many succeed.")],
-        1,
-    ),
-    "jobs": (
-        Annotated[
-            int | None, typer.Option(min=1, max=1000, help="Flights of a campaign at a time; one per core if absent.")
-        ],
-        None,
-    ),
+FLOWN = {
+    "law": LAW,
+    "seeds": option(int, "Fly this many seeds and print how many succeed.", default=1, min=1, max=1_000_000),
+    "jobs": option(int | None, "Flights of a campaign at a time; one per core if absent.", min=1, max=1000),
     **MADE,
     **SHOWN,
-    "log": (Annotated[bool, typer.Option("--log/--no-log", help="Write the run log (MCAP) of a single flight.")], True),
+    "log": option(bool, "Write the run log (MCAP) of a single flight.", "--log/--no-log", default=True),
 }
 """Options of a command that flies."""
 
 
-def taken(**parameters: tuple[Any, Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Give a command, which takes them as `**given`, these parameters: annotation and default by name."""
+def taken(epilog: str, **parameters: Parameter) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a command, which takes them as `**given`, these parameters: annotation and default by name; `epilog` ends its help."""
 
     def give(command: Callable[..., None]) -> Callable[..., None]:
         kind = inspect.Parameter.KEYWORD_ONLY
         made = [inspect.Parameter(n, kind, default=d, annotation=a) for n, (a, d) in parameters.items()]
-        command.__signature__ = inspect.Signature(made)  # type: ignore[attr-defined]
+        vars(command)["__signature__"], vars(command)["epilog"] = inspect.Signature(made), epilog
         command.__annotations__ = {name: annotation for name, (annotation, _) in parameters.items()}
         return command
 
@@ -108,7 +131,7 @@ def load(name: str, given: dict[str, Any], hinged: bool = False) -> "Scenario":
     Raises:
         ConfigurationError: all that is wrong with it.
     """
-    from armland.cli.settings import parse_settings
+    from armland.cli.options import parse_settings
     from armland.scenario import load_scenario
     from armland.scenario.tables import update
 

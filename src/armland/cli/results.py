@@ -11,9 +11,9 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
-from armland.cli.exits import attempted, in_words, say
+from armland.cli.exits import Judged, attempted, in_words, say
 from armland.errors import ConfigurationError
 
 
@@ -21,44 +21,40 @@ class Work(NamedTuple):
     """What came of a command's work."""
 
     success: bool
-    data: dict[str, Any]
-    """Plain data, for JSON."""
-    show: Callable[[Path], object]
-    """Prints tables; takes the folder of the results."""
-    draw: Callable[[Path], object] | None = None
-    """Draws figures into a folder."""
+    data: dict[str, Any]  # Plain data, for JSON
+    show: Callable[[Path], object]  # Prints tables; takes the folder of the results
+    draw: Callable[[Path], object] | None = None  # Draws figures into a folder
 
 
-def publish(out: Path, file: str, owned: Sequence[str], as_json: bool, work: Callable[["Results"], Work]) -> bool:
-    """Do a command's work, write its data into `file` and its figures beside it, and print it; returns whether it succeeded.
+def publish(given: dict[str, Any], file: str, owned: Sequence[str], work: Callable[["Results"], Work]) -> NoReturn:
+    """Do a command's work, write its data into `file` and its figures beside it, print it, and end the command by its verdict.
 
     Args:
-        out: the folder that the user names.
+        given: the command's options `out` and `as_json`, and `figures` where they may be left out.
         file: name of the JSON file.
         owned: patterns of other files that an earlier run of the same command may have left.
-        as_json: whether the data alone is printed.
         work: the work; it may write logs into the folder of the results.
 
     Raises:
         ConfigurationError: `out` cannot be used.
+        Judged: always, at the end.
     """
-    with Results(out, (file, *owned)) as results:
+    with Results(given["out"], (file, *owned)) as results:
         done = work(results)
         text = json.dumps(done.data, indent=2)
         results.write(file, text + "\n")
         results.keep()
-        if done.draw is not None:
+        if done.draw is not None and given.get("figures", True):
             with attempted("figures"):
                 done.draw(results.folder)
-    if as_json:
+    if given["as_json"]:
         print(text)
     else:
-        done.show(out)
-    return done.success
+        done.show(given["out"])
+    raise Judged(done.success)
 
 
-UNFINISHED = "unfinished"
-"""Folder in `--out` that holds the log of a run that came to no result."""
+UNFINISHED = "unfinished"  # Folder in `--out` that holds the log of a run that came to no result
 
 
 class Results:
@@ -105,11 +101,13 @@ class Results:
                 path.rmdir()
 
     def write(self, name: str, text: str) -> None:
-        """Write a text file; where that fails, say so."""
+        """Write a text file, whole or not at all; where that fails, say so."""
         try:
             (self.folder / name).write_text(text, encoding="utf-8")
         except OSError as e:
             say(f"no {name}: {in_words(e)}")
+            with suppress(OSError):
+                (self.folder / name).unlink()
 
     def scratch(self, name: str) -> Path:
         """Where a file may be written that nobody keeps."""

@@ -7,6 +7,7 @@ once and fast.
 | `naming` | a record's type is named after its layout |
 | `keeping` | a torn or unwritable cache ends in compilation, not in a traceback |
 | `inner` | what is called by compiled code alone is optimised and emitted once, with its caller |
+| `stack` | small arrays that stay in a function cost neither memory nor reference counts |
 | `warming` | what a flight needs is compiled beforehand, in processes side by side |
 """
 

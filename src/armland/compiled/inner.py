@@ -107,7 +107,10 @@ def _defer_compilation(module: Any, caching: Any) -> None:
 def _defer_code(library: Any, context: Any) -> None:
     from numba.core.environment import lookup_environment
 
+    from armland.compiled.stack import optimise
+
     finalize, optimize, executable = library.finalize, library._optimize_functions, context.get_executable
+    optimize_whole = library._optimize_final_module
 
     def finalize_or_defer(self: Any) -> None:
         if deferring():
@@ -129,6 +132,12 @@ def _defer_code(library: Any, context: Any) -> None:
         else:
             optimize(self, module)
 
+    def optimize_final_module(self: Any) -> None:
+        if _state.ours:
+            optimise(self)
+        else:
+            optimize_whole(self)
+
     def get_executable(self: Any, code: Any, description: Any, environment: Any) -> Any:
         if deferring():
             # What comes from the cache is whole.
@@ -138,6 +147,7 @@ def _defer_code(library: Any, context: Any) -> None:
         return executable(self, code, description, environment)
 
     library.finalize, library._optimize_functions = finalize_or_defer, optimize_functions
+    library._optimize_final_module = optimize_final_module
     context.get_executable = get_executable
 
 

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from subprocess import PIPE
@@ -32,10 +33,8 @@ for line in sys.stdin:
 
 def is_warm() -> bool:
     """Whether the compiled code is there; also where there is to be none, or nowhere to keep it."""
-    place = _place()
-    return (
-        os.environ.get("NUMBA_DISABLE_JIT") == "1" or place is None or _stamps(place / WARM) == _stamps(place / STAMPS)
-    )
+    at = place()
+    return os.environ.get("NUMBA_DISABLE_JIT") == "1" or at is None or _stamps(at / WARM) == _stamps(at / STAMPS)
 
 
 def warm(work: Sequence[tuple[str, str]], tell: Callable[[int, int], None]) -> bool:
@@ -71,17 +70,19 @@ def warm(work: Sequence[tuple[str, str]], tell: Callable[[int, int], None]) -> b
         for finished in [pool.submit(run) for _ in range(PROCESSES)]:
             finished.result()
     if good := len(done) == len(work):
-        place = _place()
-        if place is not None:
-            (place / WARM).write_text(json.dumps(_stamps(place / STAMPS)), encoding="utf-8")
+        at = place()
+        if at is not None:
+            with suppress(OSError):
+                (at / WARM).write_text(json.dumps(_stamps(at / STAMPS)), encoding="utf-8")
     return good
 
 
-def _place() -> Path | None:
+def place() -> Path | None:
+    """The folder in which compiled code of the package is kept; None where it cannot be kept."""
     # The first place with stamps that can be written is the one that Numba uses.
-    for place in places():
-        if os.access(cache(PACKAGE, place) / STAMPS, os.W_OK):
-            return cache(PACKAGE, place)
+    for folder in places():
+        if os.access(cache(PACKAGE, folder) / STAMPS, os.W_OK):
+            return cache(PACKAGE, folder)
     return None
 
 

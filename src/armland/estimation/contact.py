@@ -8,8 +8,8 @@
 | s_r = f_T b_z/(m g) | `rotor_share`: the thrust's vertical part | 1 |
 | s_g = 1 − s_a − s_r | `ground_share`: what is left for cradle or ground | 1 |
 
-The shares hold at rest: an upward acceleration of the UAV of 1 m/s² adds 0.1 to s_a + s_r, which the low pass and the triggers'
-debouncing take out where it does not last.
+The shares are exact at rest only: an upward acceleration of the UAV of 1 m/s² adds 0.1 to s_a + s_r. The low pass and the triggers'
+debouncing remove that where it does not last.
 
 A trigger switches on where its value has stayed above `on` for `on_ticks` ticks, and off where it has stayed below `off` for
 `off_ticks`. Gaussian noise of standard deviation σ on each component of F exceeds `on` at a given tick with the probability
@@ -135,7 +135,7 @@ def detect(
     load.contact = switched(magnitude, p.contact, s.contact)
     load.touchdown = switched(load.ground_share, p.touchdown, s.touchdown)
     load.resting = switched(load.ground_share, p.resting, s.resting)
-    # No force alone proves nothing: a UAV that hovers on the magnet pulls at nothing either. The retreat does.
+    # A force of zero does not prove the release: a UAV that hovers on the magnet exerts none either. The retreat does.
     if magnet or retreat < p.clearance:
         s.held.active, s.held.count = 1, 0
     load.released = 1 - switched(magnitude, p.release, s.held)

@@ -1,7 +1,7 @@
 """Disturbance observer (X.3): force and moment on the UAV that nothing in the model explains, from its momentum; compiled.
 
 Wind, thrust error and model error act as d_f and d_τ: ṗ = f_T R e₃ + F_EE + m γ + d_f with p = m v, and L̇ = −ω × L + τ + d_τ with
-L = Jω. What the momentum gained beyond the impulse of all that is known is the disturbance's impulse; no velocity is
+L = Jω. The disturbance's impulse is the change of momentum less the impulse of all known forces; no velocity is
 differentiated. In continuous time d̂ = K/(s + K) d: a low-pass of the first order. The ground observes the force, the UAV's own
 controller the moment.
 
@@ -17,8 +17,8 @@ controller the moment.
 | λ, s = √(2W) | `decay`, `size` of attitude, position | 1/s, √J |
 | K | `bandwidth`, of which `gain` is what a step of finite length makes | rad/s, 1/s |
 
-Inputs must be what was given and not what was asked: where rotors saturate, the rest would be taken for a disturbance. |d̃| itself is
-bounded by d₁/K + 2Kn, where |ḋ| ≤ d₁ and the momentum is wrong by at most n; what then remains of the motion by `ultimate_bound`.
+Thrust and torque must be those given and not those asked for: where rotors saturate, the difference would be taken for a disturbance.
+|d̃| is bounded by d₁/K + 2Kn, where |ḋ| ≤ d₁ and the momentum is wrong by at most n. `ultimate_bound` says which motion errors remain.
 """
 
 from functools import lru_cache
@@ -71,7 +71,7 @@ def told(mass: float, bandwidth: float, limit: float, period: float, by_axis: bo
 
 @njit(cache=True)
 def learn(estimate: Array, missed: Array, time: float, gain: float) -> None:
-    """Bring `estimate` (3,), N or N·m, up to date after `time`, s, in which an impulse `missed` (3,) came that nothing known explains.
+    """Update `estimate` (3,), N or N·m, by one step of length `time`, s, with the unexplained impulse `missed` (3,) of that step.
 
     Args:
         estimate: d̂, updated.

@@ -11,9 +11,9 @@
 Balance of the tool: w = β + (f_t, c × f_t) + w_EE with f_t = m_t Rᵀ(a − γ) (W.1), where w_EE is what the end effector puts
 on what it carries. The tool's own angular momentum is neglected: with a radius of gyration of 3 cm it has 3e-4 kg·m².
 
-β is learnt while the caller knows the end effector to be free: means of whole blocks, of which the newest one waits until the next is
-complete, so that a contact that is noticed within one block teaches nothing. The output follows the estimate at a limited
-rate and stands still otherwise: it never jumps because of β.
+β is learnt while the caller knows the end effector to be free, from the means of whole blocks. A block counts only when the next one
+is complete, so a contact that is noticed within one block is not learnt. The β that is subtracted follows its estimate at a limited
+rate, so the output never jumps because of β.
 """
 
 from functools import lru_cache

@@ -7,23 +7,17 @@ import numpy as np
 
 from armland.experiments.episode import Episode
 from armland.experiments.judge.tracking import Metrics
-from armland.experiments.paper import Progress, Verdict, fly_all, metrics_of, prepare
+from armland.experiments.paper import UNBOUNDED, Progress, Verdict, fly_all, metrics_of, prepare, silent
 from armland.scenario import Scenario
 
-SCALES = (1.0, 0.8, 1.2)
-"""Factors on mass and inertia of the controller's arm model."""
-
-DELAYS_MS = (0.0, 20.0, 40.0, 60.0)
-"""Uplink delays of the sweep."""
+SCALES = (1.0, 0.8, 1.2)  # Factors on mass and inertia of the controller's arm model
+DELAYS_MS = (0.0, 20.0, 40.0, 60.0)  # Uplink delays of the sweep
 
 PUSH = {"force_n": (0.0, 2.0, 0.0), "torque_nm": (-0.05, 0.0, 0.0)}
 """Constant force and torque on the UAV; the torque adds to the one that the hinge makes of the force."""
 
-FULL_THRUST_N = 7.44
-"""Total thrust at which the rotors have no room left for torque: four times the largest of one."""
-
-HEAVY_TORQUE_NM = (0.12, 0.0, 0.0)
-"""Constant torque beside it."""
+FULL_THRUST_N = 7.44  # Total thrust at which the rotors have no room left for torque: four times the largest of one
+HEAVY_TORQUE_NM = (0.12, 0.0, 0.0)  # Constant torque beside it
 
 BEST, LAST_OF_PAPER, HOST = "observer", "E3", "implied"
 """Law that shall be best; the paper's; the one whose settings a law of one's own takes."""
@@ -39,10 +33,8 @@ class Row:
     torque_ratio_max: float
     resting_swing_deg: float
     """Largest deviation of the attitude from its mean during the last second, deg: a limit cycle does not rest."""
-    resting_error_m: float
-    """Largest mean position error of an axis during the last second, m."""
-    resting_tilt_deg: float
-    """Mean attitude error during the last second, deg."""
+    resting_error_m: float  # Largest mean position error of an axis during the last second, m
+    resting_tilt_deg: float  # Mean attitude error during the last second, deg
 
 
 @dataclass(frozen=True)
@@ -81,7 +73,7 @@ def conditions(scenario: Scenario) -> dict[str, tuple[Scenario, tuple[str, ...]]
     return out
 
 
-def compare(scenario: Scenario, law: str | None = None, progress: Progress | None = None) -> Comparison:
+def compare(scenario: Scenario, law: str | None = None, progress: Progress = silent) -> Comparison:
     """Fly every law of a scenario under every condition.
 
     Args:
@@ -95,14 +87,12 @@ def compare(scenario: Scenario, law: str | None = None, progress: Progress | Non
     rows: list[Row] = []
     every = conditions(scenario)
     for done, (name, (changed, laws)) in enumerate(every.items()):
-        if progress is not None:
-            progress(name, done, len(every))
+        progress(name, done, len(every))
         flown = fly_all(prepare(changed, [name for name in laws if name in changed.experiments]))
         rows += [_row(name, law, episode) for law, episode in flown.items()]
-    if progress is not None:
-        progress("done", len(every), len(every))
-    comparison = Comparison(rows, [])
-    return Comparison(rows, _verdicts(comparison)) if _complete(comparison) else comparison
+    progress("done", len(every), len(every))
+    complete = {"E2", "E3", "implied", "split", "limits", "observer"} <= {r.law for r in rows}
+    return Comparison(rows, _verdicts(Comparison(rows, [])) if complete else [])
 
 
 def _row(condition: str, law: str, episode: Episode) -> Row:
@@ -121,46 +111,33 @@ def _row(condition: str, law: str, episode: Episode) -> Row:
     )
 
 
-def _complete(comparison: Comparison) -> bool:
-    laws = {r.law for r in comparison.rows}
-    return {"E2", "E3", "implied", "split", "limits", "observer"} <= laws
-
-
 def _verdicts(c: Comparison) -> list[Verdict]:
     out = []
+
+    def below(claim: str, value: float, bound: float) -> None:
+        out.append(Verdict.within(claim, value, 0.0, bound))
+
+    def above(claim: str, value: float, bound: float) -> None:
+        out.append(Verdict.within(claim, value, bound, UNBOUNDED))
+
     for scale in SCALES:
         name = f"model x {scale:g}"
         best, e3 = c.row(name, BEST).metrics, c.row(name, LAST_OF_PAPER).metrics
         for k, share in enumerate((20.0, 20.0, 10.0)):
             ratio = best.position_rms_m[k] / e3.position_rms_m[k]
-            out.append(_below(f"{name}: {'xyz'[k]} RMS error against E3's", ratio, 1.0 / share))
+            below(f"{name}: {'xyz'[k]} RMS error against E3's", ratio, 1.0 / share)
         attitude = best.attitude_max_deg / c.row(name, "E2").metrics.attitude_max_deg
-        out.append(_below(f"{name}: largest attitude error against E2's", attitude, 0.2))
-        out.append(_below(f"{name}: largest joint torque over its limit", c.row(name, BEST).torque_ratio_max, 0.99))
+        below(f"{name}: largest attitude error against E2's", attitude, 0.2)
+        below(f"{name}: largest joint torque over its limit", c.row(name, BEST).torque_ratio_max, 0.99)
     for delay in DELAYS_MS:
         name = f"delay {delay:g} ms"
-        out.append(_below(f"{name}: swing at rest, split law (deg)", c.row(name, BEST).resting_swing_deg, 0.2))
+        below(f"{name}: swing at rest, split law (deg)", c.row(name, BEST).resting_swing_deg, 0.2)
     late = f"delay {DELAYS_MS[-1]:g} ms"
-    out.append(
-        _above(
-            f"{late}: swing at rest, published gains over the link (deg)", c.row(late, "implied").resting_swing_deg, 0.2
-        )
-    )
-    out.append(_below("pushed: position error left, observer (m)", c.row("pushed", BEST).resting_error_m, 1e-3))
-    out.append(_below("pushed: attitude error left, observer (deg)", c.row("pushed", BEST).resting_tilt_deg, 0.5))
-    out.append(_above("pushed: attitude error left, no observer (deg)", c.row("pushed", "split").resting_tilt_deg, 0.5))
-    ratio = (
-        c.row("full thrust", "limits").metrics.position_rms_m[2]
-        / c.row("full thrust", "split").metrics.position_rms_m[2]
-    )
-    out.append(_below("full thrust: z RMS error, aware of the rotors' limits against not", ratio, 0.75))
+    swing = c.row(late, HOST).resting_swing_deg
+    above(f"{late}: swing at rest, published gains over the link (deg)", swing, 0.2)
+    below("pushed: position error left, observer (m)", c.row("pushed", BEST).resting_error_m, 1e-3)
+    below("pushed: attitude error left, observer (deg)", c.row("pushed", BEST).resting_tilt_deg, 0.5)
+    above("pushed: attitude error left, no observer (deg)", c.row("pushed", "split").resting_tilt_deg, 0.5)
+    aware, unaware = (c.row("full thrust", law).metrics.position_rms_m[2] for law in ("limits", "split"))
+    below("full thrust: z RMS error, aware of the rotors' limits against not", aware / unaware, 0.75)
     return out
-
-
-def _below(claim: str, value: float, bound: float) -> Verdict:
-    return Verdict(claim, value, [0.0, bound], bool(value <= bound))
-
-
-def _above(claim: str, value: float, bound: float) -> Verdict:
-    # No infinity: the result is JSON.
-    return Verdict(claim, value, [bound, 1e9], bool(value >= bound))

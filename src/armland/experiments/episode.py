@@ -8,10 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from armland.experiments.judge.brief import Brief, brief_of
-from armland.experiments.judge.figures import NAMES
-from armland.experiments.judge.judgement import Judgement, judge
-from armland.experiments.metadata import metadata_of
+from armland.experiments.judge.brief import Brief, brief_of, metadata_of
+from armland.experiments.judge.judgement import Judgement, check_kind, judge
 from armland.mission.controller import Controller
 from armland.mission.plan import Plan, plan
 from armland.mission.tuning import fitted
@@ -22,9 +20,9 @@ from armland.runtime.log import Log
 from armland.runtime.log.columns import columns
 from armland.runtime.recorder import Recorder
 from armland.scenario import Scenario
+from armland.scenario.sensing import Imperfections
 
-Progress = Callable[[str, float], None]
-"""Called with phase and time, s, when a phase begins."""
+Progress = Callable[[str, float], None]  # Called with phase and time, s, when a phase begins
 
 
 class Flight(NamedTuple):
@@ -34,8 +32,7 @@ class Flight(NamedTuple):
     plan: Plan
     simulator: Simulator
     controller: Controller
-    metadata: dict[str, str]
-    """For the log: what the judge, a report or a figure needs to know beside the ticks."""
+    metadata: dict[str, str]  # For the log: what the judge, a report or a figure needs to know beside the ticks
 
     @property
     def period_ns(self) -> int:
@@ -55,13 +52,10 @@ class Episode:
     result: dict[str, Any]
     """Plain data: the judgement, and mission, experiment, law, seed, `law_failure`, `never_acted`, `log_cut_short`,
     `real_time_factor`."""
-    ticks: NDArray[np.void] = field(repr=False)
-    """(k,) of `records.tick_layout`."""
-    log: Path | None
-    """The run log, where one was asked for."""
+    ticks: NDArray[np.void] = field(repr=False)  # (k,) of `records.tick_layout`
+    log: Path | None  # The run log, where one was asked for
     judgement: Judgement
-    metadata: dict[str, str] = field(repr=False)
-    """As it stands in the log."""
+    metadata: dict[str, str] = field(repr=False)  # As it stands in the log
 
     def table(self) -> dict[str, NDArray]:
         """The ticks as flat columns (k,) by name, such as `truth.r.2`, with `time` in s: `pandas.DataFrame(episode.table())`."""
@@ -76,15 +70,7 @@ def prepare(
     experiment: str | None = None,
     trial: bool = False,
 ) -> Flight:
-    """Check everything about a flight before anything moves or is written.
-
-    Args:
-        scenario: what is flown.
-        mission: name in `mission.registry.MISSIONS`.
-        seed: replaces the scenario's.
-        law: row of the law table, or FILE.py:FUNCTION, instead of the mission's own.
-        experiment: row of the scenario's experiments, for missions that fly one.
-        trial: whether a UAV may fly that is too heavy to hover.
+    """Check everything about a flight, with arguments as for `fly`, before anything moves or is written.
 
     Raises:
         ConfigurationError: what is refused, with the value and its bound.
@@ -92,6 +78,7 @@ def prepare(
     if seed is not None:
         scenario = scenario.with_seed(seed)
     made = plan(scenario, mission, law=law, experiment=experiment, trial=trial)
+    check_kind(made.mission)
     if made.experiment is not None:
         # An experiment sets the UAV's own controller as well.
         scenario = fitted(scenario, made.scenario, made.experiment)
@@ -168,15 +155,6 @@ def result_of_log(log: Log) -> dict[str, Any]:
     return _result(judge(log.messages, brief_of(log.metadata)), log.metadata)
 
 
-def bounds(flight: Flight) -> dict[str, float]:
-    """Largest allowed values of the figures of a flight, by where they stand in its result."""
-    brief = flight.brief
-    out = {NAMES.get(c.name, c.name): c.bound for c in brief.criteria}
-    if "hinge_max" in brief.limits:
-        out["hinge_force_max_n"] = float(brief.limits["hinge_max"])
-    return {**out, "joint_torque_max_ratio": 1.0}
-
-
 def law_failure(made: Plan, controller: Controller) -> str:
     """What a user's own law did wrong, with its tick and value; empty where it did nothing wrong."""
     kept = controller.board["kept"]["act"]["law"][0]
@@ -197,3 +175,16 @@ def never_acted(scenario: Scenario, acted: Any) -> list[str]:
 def _result(judgement: Judgement, metadata: dict[str, str]) -> dict[str, Any]:
     told = {name: metadata[name] for name in ("mission", "experiment", "law")}
     return {**told, "seed": int(metadata["seed"]), **judgement.result()}
+
+
+def quiet(scenario: Scenario, camera: bool = False) -> Scenario:
+    """The scenario without imperfections, faults and differences between seeds.
+
+    Args:
+        scenario: any.
+        camera: whether noise, delay and drop-outs of the camera stay.
+    """
+    none = {name: 0.0 for name, f in Imperfections.model_fields.items() if f.annotation is not bool}
+    start = {"start_offset_m": (0.0, 0.0, 0.0), "start_speed_mps": 0.0, "start_heading_deg": 0.0}
+    imperfections = {**none, "camera": camera, "noise": False}
+    return scenario.replaced({"imperfections": imperfections, "place": start, "faults": ()})

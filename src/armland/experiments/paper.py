@@ -17,21 +17,18 @@ from armland.scenario import Scenario
 PUBLISHED: dict[str, Any] = {
     "E1": {"attitude_max_deg": 9.2},
     "E2": {"attitude_max_deg": 6.8},
-    "statements": [
-        "E2 overshoots less than E1",
-        "E3 tracks z clearly better than E2",
-    ],
+    "statements": ["E2 overshoots less than E1", "E3 tracks z clearly better than E2"],
 }
 """What the paper reports in numbers and in words."""
 
-TOLERANCE = 0.10
-"""Relative tolerance on a published number."""
+TOLERANCE = 0.10  # Relative tolerance on a published number
+Z_RATIO = 0.5  # Largest ratio of E3's z RMS error to E2's that counts as clearly better
+UNBOUNDED = 1e9  # An upper bound from here on is none; JSON knows no infinity
+Progress = Callable[[str, int, int], None]  # Called with (what, done, in all)
 
-Z_RATIO = 0.5
-"""Largest ratio of E3's z RMS error to E2's that counts as clearly better."""
 
-Progress = Callable[[str, int, int], None]
-"""Called with (what, done, in all)."""
+def silent(what: str, done: int, total: int) -> None:
+    """The `Progress` of who wants to hear of none."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +39,11 @@ class Verdict:
     value: float
     bound: list[float]
     holds: bool
+
+    @classmethod
+    def within(cls, claim: str, value: float, low: float, high: float) -> "Verdict":
+        """The verdict on a claim whose bounds belong to what holds; `UNBOUNDED` above is no bound."""
+        return cls(claim, value, [low, high], bool(low <= value <= high))
 
 
 @dataclass(frozen=True)
@@ -80,9 +82,7 @@ def prepare(scenario: Scenario, names: Iterable[str] | None = None) -> dict[str,
     }
 
 
-def run_experiments(
-    flights: Mapping[str, Flight], logs: Path | None = None, progress: Progress | None = None
-) -> Outcome:
+def run_experiments(flights: Mapping[str, Flight], logs: Path | None = None, progress: Progress = silent) -> Outcome:
     """Fly what was prepared and judge it.
 
     Args:
@@ -95,9 +95,7 @@ def run_experiments(
     return Outcome(episodes, metrics, judge(metrics))
 
 
-def fly_all(
-    flights: Mapping[str, Flight], logs: Path | None = None, progress: Progress | None = None
-) -> dict[str, Episode]:
+def fly_all(flights: Mapping[str, Flight], logs: Path | None = None, progress: Progress = silent) -> dict[str, Episode]:
     """Fly what was prepared over the threads of this process; arguments as for `run_experiments`."""
 
     def one(name: str) -> Episode:
@@ -107,8 +105,7 @@ def fly_all(
     with ThreadPoolExecutor(os.cpu_count() or 1, "experiment") as pool:
         for done, (name, flown) in enumerate(zip(flights, pool.map(one, flights), strict=True)):
             episodes[name] = flown
-            if progress is not None:
-                progress(name, done + 1, len(flights))
+            progress(name, done + 1, len(flights))
     return episodes
 
 
@@ -138,14 +135,13 @@ def judge(metrics: Mapping[str, Metrics]) -> list[Verdict]:
         if name in metrics:
             published = PUBLISHED[name]["attitude_max_deg"]
             value = metrics[name].attitude_max_deg
-            bound = [published * (1.0 - TOLERANCE), published * (1.0 + TOLERANCE)]
-            claim = f"{name} deviates up to {published}° in attitude"
-            verdicts.append(Verdict(claim, value, bound, bool(bound[0] <= value <= bound[1])))
+            claim, low, high = f"{name} deviates up to {published}° in attitude", 1.0 - TOLERANCE, 1.0 + TOLERANCE
+            verdicts.append(Verdict.within(claim, value, published * low, published * high))
     if {"E1", "E2"} <= metrics.keys():
         for axis, one, two in zip("xyz", metrics["E1"].overshoot_m, metrics["E2"].overshoot_m, strict=True):
             verdicts.append(Verdict(f"E2 overshoots less than E1 in {axis} (m)", two, [0.0, one], bool(two < one)))
     if {"E2", "E3"} <= metrics.keys():
         ratio = metrics["E3"].position_rms_m[2] / metrics["E2"].position_rms_m[2]
         claim = "E3 tracks z clearly better than E2 (RMS ratio)"
-        verdicts.append(Verdict(claim, ratio, [0.0, Z_RATIO], bool(ratio <= Z_RATIO)))
+        verdicts.append(Verdict.within(claim, ratio, 0.0, Z_RATIO))
     return verdicts

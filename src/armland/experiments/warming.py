@@ -10,8 +10,7 @@ from armland.plant.block import fly_block
 from armland.plant.simulator import Simulator
 from armland.scenario import load_scenario
 
-JOINTS = 7
-"""Of the arm that comes with armland; for another one code is compiled when it first flies."""
+JOINTS = 7  # Of the arm that comes with armland; for another one code is compiled when it first flies
 
 HERE = __name__
 

@@ -5,11 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.models.inflow import Rotors, advance_of, disc_of
-from armland.models.parameters import plate_mass, uav_parameters
+from armland.models.parameters import ROTORS, plate_mass, uav_parameters
 from armland.models.uav import UavParameters
 from armland.scenario import Scenario
-
-ROTORS = 4
 
 
 class Flyer(NamedTuple):

@@ -1,7 +1,10 @@
 """The controller of every mission: screen, arm model, estimate, decide, refer, act, limit, in this order, in one compiled call."""
 
+from collections.abc import Callable
+from functools import cached_property
+
 import numpy as np
-from numba import njit
+from numba import config, njit, typeof
 
 from armland.linking import link
 from armland.mission.act import act
@@ -114,11 +117,20 @@ class Controller:
         kept = self.board["kept"]["decide"]
         return int(self.tick.measurement["tick"][0] - kept["begin"][0]) if self.final else -1
 
+    @cached_property
+    def _control(self) -> Callable[..., None]:
+        # `control` for arguments of these types: to find it out at every call takes as long as a fifth of a tick.
+        if config.DISABLE_JIT:  # type: ignore[attr-defined]
+            return control
+        types = tuple(map(typeof, (self.board, self.plan.path, self.plan.arm.views)))
+        control.compile(types)
+        return control.overloads[types].entry_point  # type: ignore
+
     def update(self, tick: Tick) -> None:
         """Fill estimate, mission, reference, command, health and proof of `tick` from its measurement.
 
         Args:
             tick: the controller's own, `Controller.tick`.
         """
-        assert tick.buffer.ctypes.data == self.tick.buffer.ctypes.data
-        control(self.board, self.plan.path, self.plan.arm.views)
+        assert tick.buffer is self.tick.buffer
+        self._control(self.board, self.plan.path, self.plan.arm.views)

@@ -15,7 +15,7 @@ from armland.mission.feasibility.launch import Carrying, Launch, plan_launch, ti
 from armland.mission.feasibility.path import survey_path
 from armland.mission.feasibility.reach import survey, targets
 from armland.mission.feasibility.weight import check_weight, flies_on
-from armland.mission.missions.launch import gives_speed
+from armland.mission.missions.takeoff import gives_speed
 from armland.mission.reference.path import Leg
 from armland.mission.registry import mission_named
 from armland.mission.supervisor.table import debounce_ticks, fault_rows

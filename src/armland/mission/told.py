@@ -12,11 +12,12 @@ from armland.control.laws.settings import Row
 from armland.control.laws.settings import told as law_told
 from armland.estimation import contact, disturbance, wrench
 from armland.estimation.plate import layouts
-from armland.mission.belief import ROTORS, Flyer
+from armland.mission.belief import Flyer
 from armland.mission.board import board_layout
 from armland.mission.feasibility.launch import Launch
 from armland.mission.table.mission import Start
 from armland.models.arm import ArmModel
+from armland.models.parameters import ROTORS
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -100,12 +101,8 @@ def _estimate(p: Records, t: Telling) -> None:
     p["velocity_terms"] = t.switches.acceleration == "implied"
     p["joint_leap"] = np.inf if hinged else JOINT_LEAP_RAD_S * t.tick_s
     p["attitude_leap"] = np.inf if hinged else ATTITUDE_LEAP_RAD
-    p["mass"], p["weight"], p["body_mass"], p["lever"] = (
-        t.flyer.mass,
-        t.flyer.weight,
-        t.flyer.body.mass,
-        t.flyer.body.lever,
-    )
+    p["mass"], p["weight"] = t.flyer.mass, t.flyer.weight
+    p["body_mass"], p["lever"] = t.flyer.body.mass, t.flyer.body.lever
     # What is asked of a hinged UAV counts as given: what is not, is a disturbance.
     p["uplink"] = 1 if hinged else t.ticks(s.link.uplink_delay_ms)
     p["rotor_gain"] = 1.0 if hinged else 1.0 - np.exp(-1.0 / (s.run.rate_hz * s.rotors.time_constant_s))

@@ -1,14 +1,11 @@
 """Gains of an experiment: those given, or those that its rule makes for ground and board."""
 
-from armland.control.design.gains import Design, Wanted, onboard_rule, rule
+from armland.control.design.gains import DERIVATIVE_LAG_S, Design, Wanted, onboard_rule, rule
 from armland.control.design.margins import Delays
 from armland.models.parameters import uav_parameters
 from armland.scenario import Scenario
 from armland.scenario.control import Poles
 from armland.scenario.uav import Onboard
-
-DERIVATIVE_LAG_S = 0.01
-"""Low pass of the derivative with which the cascade on board makes up for rotor lag, s."""
 
 
 def tuned(scenario: Scenario, experiment: str) -> Scenario:
@@ -23,13 +20,9 @@ def tuned(scenario: Scenario, experiment: str) -> Scenario:
         design = designed(scenario, e.rule, True, onboard)
         gains = design.gains
         onboard = onboard.model_copy(update={"kp_nm": tuple(design.kp), "kd_nms": tuple(design.kd)})
-        update = {
-            "k1": tuple(gains.k1),
-            "k2": tuple(gains.k2),
-            "k3": gains.k3_position,
-            "k3_attitude": gains.k3_attitude,
-        }
-        control = control.model_copy(update=update)
+        k1, k2 = tuple(gains.k1), tuple(gains.k2)
+        k3 = {"k3": gains.k3_position, "k3_attitude": gains.k3_attitude}
+        control = control.model_copy(update={"k1": k1, "k2": k2, **k3})
     return scenario.model_copy(update={"onboard": onboard, "control": control})
 
 

@@ -20,9 +20,10 @@ from armland.models.chain import (
     refresh,
     state_layout,
 )
-from armland.models.description import EE_SITE, Tool, compile_spec, mark_end_effector, read_spec
+from armland.models.description import EE_SITE, compile_spec, mark_end_effector, read_spec
 from armland.records import Records
 from armland.rotations import Array
+from armland.scenario.arm import Tool
 
 EARTH = (0.0, 0.0, -9.81)
 """Gravity at rest on land, m/s²."""

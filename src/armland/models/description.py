@@ -3,32 +3,19 @@
 import xml.etree.ElementTree as ET
 from importlib.resources import files
 from pathlib import Path
-from typing import NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from armland.errors import ModelError
+from armland.scenario.arm import Tool
 
 ASSETS = Path(str(files("armland") / "assets"))
 """Folder of the arm and UAV descriptions that come with armland."""
 
 EE_SITE = "armland_ee"
 """Site that marks the controlled point: the end effector frame, or the tool's tip where a tool is attached."""
-
-
-class Tool(NamedTuple):
-    """Rigid tool between the flange and the hinge's pivot.
-
-    The sensor measures what acts beyond its own body; `sensor_*` is the part before, `tool_*` the part behind.
-    """
-
-    sensor_mass: float  # kg
-    sensor_length: float  # m, flange to the sensor's measuring plane, along the frame's z
-    tool_mass: float  # kg, everything behind the measuring plane that stays on the arm
-    tool_com: float  # m, measuring plane to the tool's centre of mass, along z
-    length: float  # m, flange to the pivot, along z
 
 
 def resolve(file: str) -> Path:
@@ -104,33 +91,16 @@ def mark_end_effector(spec: mujoco.MjSpec, frame: str, tool: Tool | None) -> Non
 
 
 def _mount(parent: mujoco.MjsBody, pos: NDArray, quat: NDArray, tool: Tool) -> mujoco.MjsBody:
+    beyond = tool.length_m - tool.sensor_length_m
     sensor = parent.add_body(name="armland_sensor", pos=pos, quat=quat)
-    _solid(sensor, tool.sensor_mass, 0.5 * tool.sensor_length)
-    sensor.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-        fromto=[0, 0, 0, 0, 0, tool.sensor_length],
-        size=[0.04, 0, 0],
-        rgba=[0.75, 0.77, 0.8, 1],
-        contype=0,
-        conaffinity=0,
-        group=2,
-        mass=0,
-    )
-    body = sensor.add_body(name="armland_tool", pos=[0, 0, tool.sensor_length])
-    _solid(body, tool.tool_mass, tool.tool_com)
-    body.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-        fromto=[0, 0, 0, 0, 0, tool.length - tool.sensor_length - 0.012],
-        size=[0.028, 0, 0],
-        rgba=[0.2, 0.22, 0.25, 1],
-        contype=0,
-        conaffinity=0,
-        group=2,
-        mass=0,
-    )
+    _solid(sensor, tool.sensor_mass_kg, 0.5 * tool.sensor_length_m)
+    _draw(sensor, tool.sensor_length_m, 0.04, [0.75, 0.77, 0.8, 1])
+    body = sensor.add_body(name="armland_tool", pos=[0, 0, tool.sensor_length_m])
+    _solid(body, tool.tool_mass_kg, tool.tool_com_m)
+    _draw(body, beyond - 0.012, 0.028, [0.2, 0.22, 0.25, 1])
     # The force-torque sensor's origin: what the tool body puts on its parent is measured here.
     body.add_site(name="armland_fts")
-    body.add_site(name=EE_SITE, pos=[0, 0, tool.length - tool.sensor_length])
+    body.add_site(name=EE_SITE, pos=[0, 0, beyond])
     return sensor
 
 
@@ -140,6 +110,12 @@ def _solid(body: mujoco.MjsBody, mass: float, com: float) -> None:
     body.ipos = [0, 0, com]
     body.inertia = [mass * 0.03**2] * 3
     body.explicitinertial = True
+
+
+def _draw(body: mujoco.MjsBody, length: float, radius: float, colour: list[float]) -> None:
+    # A cylinder along z that is seen and neither weighs nor touches.
+    look = {"type": mujoco.mjtGeom.mjGEOM_CYLINDER, "mass": 0, "contype": 0, "conaffinity": 0, "group": 2}
+    body.add_geom(fromto=[0, 0, 0, 0, 0, length], size=[radius, 0, 0], rgba=colour, **look)
 
 
 def compile_spec(spec: mujoco.MjSpec, what: str) -> mujoco.MjModel:

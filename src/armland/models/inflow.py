@@ -56,22 +56,6 @@ def advance_of(slope: float, inflow_ratio: float) -> float:
 
 
 @njit(cache=True)
-def induced(thrust: float, in_plane: float, axial: float, disc: float) -> float:
-    """v_i, m/s, of a rotor that gives `thrust` N: the positive root of (I.1), by Newton's method."""
-    if thrust <= 0.0:
-        return 0.0
-    v_h = np.sqrt(thrust / disc)
-    x, c, w = in_plane / v_h, max(axial / v_h, SLOWEST), 1.0
-    for _ in range(50):
-        s = np.sqrt(x * x + (w + c) * (w + c))
-        step = (w * s - 1.0) / (s + w * (w + c) / s)
-        w = max(w - step, 0.1 * w)
-        if abs(step) < 1e-12:
-            break
-    return float(w * v_h)
-
-
-@njit(cache=True)
 def factor_at_speed(static: float, in_plane: float, axial: float, disc: float, slope: float, advance: float) -> float:
     """t = T/T₀ of a rotor that keeps its speed. Source: (I.1), (I.2)."""
     if static <= 1e-3:

@@ -7,7 +7,7 @@ import numpy as np
 
 from armland.errors import ModelError
 from armland.models.arm import ArmModel
-from armland.models.description import Tool, compile_spec, mark_end_effector, read_spec, resolve
+from armland.models.description import compile_spec, mark_end_effector, read_spec, resolve
 from armland.models.uav import UavParameters, mixer
 from armland.rotations import Array, matrix
 from armland.scenario import Scenario
@@ -20,7 +20,7 @@ def arm_spec(scenario: Scenario) -> mujoco.MjSpec:
         ModelError: missing or malformed file, unknown frame.
     """
     spec = read_spec(resolve(scenario.arm.file))
-    mark_end_effector(spec, scenario.arm.ee, tool_of(scenario))
+    mark_end_effector(spec, scenario.arm.ee, scenario.tool)
     apply_default_armature(spec, scenario.arm.default_armature_kgm2)
     return spec
 
@@ -33,12 +33,6 @@ def arm_model(scenario: Scenario) -> ArmModel:
     """
     gravity = scenario.environment.gravity_mps2
     return ArmModel(arm_spec(scenario), f"arm file {scenario.arm.file!r}", scenario.arm.inertia_scale, gravity)
-
-
-def tool_of(scenario: Scenario) -> Tool:
-    """Masses and lengths of force-torque sensor and magnet as the arm's description takes them."""
-    t = scenario.tool
-    return Tool(t.sensor_mass_kg, t.sensor_length_m, t.tool_mass_kg, t.tool_com_m, t.length_m)
 
 
 def apply_default_armature(spec: mujoco.MjSpec, armature: float) -> None:
@@ -61,6 +55,11 @@ class _Frame(NamedTuple):
 
 
 STEEL_KGM3 = 7850.0
+
+ROTORS = 4
+
+ROTOR_SITES = tuple(f"rotor_{i + 1}" for i in range(ROTORS))
+"""Where the rotors are in a UAV's file."""
 
 
 def uav_parameters(scenario: Scenario) -> UavParameters:
@@ -93,14 +92,24 @@ def rotor_mixer(scenario: Scenario) -> Array:
     return mixer(_frame(scenario).rotors, scenario.rotors.drag_torque_m)
 
 
-def _frame(scenario: Scenario) -> _Frame:
-    spec = read_spec(resolve(scenario.uav.file), "UAV file")
-    what, sites = f"UAV file {scenario.uav.file!r}", ["cm", "pivot", *(f"rotor_{i + 1}" for i in range(4))]
-    names = {s.name for s in spec.sites} | ({"uav"} if any(b.name == "uav" for b in spec.bodies) else set())
-    missing = [n for n in ("uav", *sites) if n not in names]
+def uav_file(scenario: Scenario) -> mujoco.MjSpec:
+    """The UAV's file: its body `uav`, the sites `cm` and `pivot` and one site for each rotor, all of which it has.
+
+    Raises:
+        ModelError: a file that cannot be used; the message names what it lacks.
+    """
+    spec, names = read_spec(resolve(scenario.uav.file), "UAV file"), ("uav", "cm", "pivot", *ROTOR_SITES)
+    known = {s.name for s in spec.sites} | ({"uav"} & {b.name for b in spec.bodies})
+    missing = [name for name in names if name not in known]
     if missing:
-        raise ModelError(f"{what} lacks {', '.join(missing)}; it needs a body 'uav' and the sites {', '.join(sites)}")
-    model = compile_spec(spec, what)
+        raise ModelError(
+            f"UAV file {scenario.uav.file!r} lacks {', '.join(missing)}; it needs a body 'uav' and the sites {', '.join(names[1:])}"
+        )
+    return spec
+
+
+def _frame(scenario: Scenario) -> _Frame:
+    model = compile_spec(uav_file(scenario), f"UAV file {scenario.uav.file!r}")
     body, cm = model.body("uav"), model.site("cm").pos
-    R, places = matrix(body.iquat), np.array([model.site(n).pos - cm for n in sites[1:]])
+    R, places = matrix(body.iquat), np.array([model.site(name).pos - cm for name in ("pivot", *ROTOR_SITES)])
     return _Frame(float(body.mass[0]), R @ np.diag(body.inertia) @ R.T, places[0], places[1:])

@@ -87,7 +87,7 @@ def home_poses(arm: ArmModel, position: Array | None, near: Array | None, elbow:
     )
 
 
-def check_path(arm: ArmModel, q: Array, R_d: Array, points: Array, times: Array) -> float:
+def check_path(arm: ArmModel, q: Array, R_d: Array, points: Array, times: Array | None = None) -> float:
     """Follow a path; returns the smallest distance of a joint to its range's end on it, rad.
 
     Args:
@@ -95,20 +95,24 @@ def check_path(arm: ArmModel, q: Array, R_d: Array, points: Array, times: Array)
         q: joint positions (n,), rad, from which it is followed.
         R_d: rotation (3, 3), D<-E, that is held.
         points: (k, 3), m, D, of the end effector.
-        times: (k,), s, for the message.
+        times: (k,), s, of a trajectory, for the message.
 
     Raises:
         WorkspaceError: names the time, and the joint at its limit or the distance that remains.
     """
     low, high = _bounds(arm, 0.0)
     margin = np.inf
-    for t, point in zip(times, points, strict=True):
+    for i, point in enumerate(points):
         pose = _solve(arm, q, _Task(point, R_d, low, high, CAUTION, None))
         q = pose.q
         gap = np.minimum(q - low, high - q)
         margin = min(margin, float(gap.min()))
         if not pose.reached:
-            raise WorkspaceError(_refusal(arm, pose, point, float(t), gap))
+            text = _refusal(arm, pose, point, gap)
+            if times is not None:
+                text = f"the trajectory leaves the workspace at t = {times[i]:.2f} s: {text}"
+                text += "; shorten the moves or change trajectory.start_m"
+            raise WorkspaceError(text)
     return margin
 
 
@@ -136,16 +140,13 @@ def upright(R: Array) -> Array:
     return np.column_stack([x, np.cross([0.0, 0.0, 1.0], x), [0.0, 0.0, 1.0]])
 
 
-def _refusal(arm: ArmModel, pose: Pose, point: Array, t: float, gap: Array) -> str:
-    text = (
-        f"the trajectory leaves the workspace at t = {t:.2f} s: {_text(point)} m is out of reach by {1e3 * pose.distance:.0f} mm "
-        f"and {np.rad2deg(pose.tilt):.1f}°"
-    )
+def _refusal(arm: ArmModel, pose: Pose, point: Array, gap: Array) -> str:
+    text = f"{_text(point)} m is out of reach by {1e3 * pose.distance:.0f} mm and {np.rad2deg(pose.tilt):.1f}°"
     tight = int(gap.argmin())
     if gap[tight] < 1e-3:
         low, high = np.rad2deg(arm.q_min[tight]), np.rad2deg(arm.q_max[tight])
         text += f"; joint {arm.joint_names[tight]} is at the end of its range, {low:.0f}° to {high:.0f}°"
-    return text + "; shorten the moves or change trajectory.start_m"
+    return text
 
 
 def _bounds(arm: ArmModel, margin: float) -> tuple[Array, Array]:

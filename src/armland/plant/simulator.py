@@ -9,6 +9,7 @@ from numba import njit
 from armland.errors import PlantError
 from armland.linking import link
 from armland.mission.controller import Controller
+from armland.models.parameters import ROTORS
 from armland.plant.block import fly_block
 from armland.plant.cycle import APPLIED, Views, actuate, sense, views_of
 from armland.plant.devices import brake, faults
@@ -17,7 +18,6 @@ from armland.plant.draw import Start, draw
 from armland.plant.noise import BLOCK, Noise, NoiseSource
 from armland.plant.pictures import Photographer, Pictures
 from armland.plant.scene.composition import Scene, build_scene
-from armland.plant.scene.uav import ROTORS
 from armland.plant.world import build_world
 from armland.records import Records, Tick, UavMode, layout
 from armland.rotations import Array, from_rotation_vector, matrix, multiply

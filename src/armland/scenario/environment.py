@@ -3,15 +3,16 @@
 import math
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 
-from armland.scenario.quantities import Acceleration3, Force3, Section, Torque3, between
+from armland.scenario import quantities as of
+from armland.scenario.quantities import Section, between, key
 
 LEAST_GRAVITY = 0.1
 """m/s²."""
 
 
-def _gravity(value: Acceleration3) -> Acceleration3:
+def _gravity(value: of.Acceleration3) -> of.Acceleration3:
     if value[2] > -LEAST_GRAVITY or -value[2] < 0.5 * math.hypot(*value):
         raise ValueError(
             f"gravity must point downwards, within 60 degrees of -z and with at least {LEAST_GRAVITY:g} m/s² along it: "
@@ -23,16 +24,12 @@ def _gravity(value: Acceleration3) -> Acceleration3:
 class Environment(Section):
     """What acts on everything."""
 
-    gravity_mps2: Annotated[Acceleration3, AfterValidator(_gravity)] = Field(
-        (0.0, 0.0, -9.81), description="world axes"
-    )
-    air_density_kgm3: Annotated[float, between(1e-3, 100.0)] = Field(
-        1.225, description="of the air that the rotors move"
-    )
+    gravity_mps2: Annotated[of.Acceleration3, AfterValidator(_gravity)] = key((0.0, 0.0, -9.81), "world axes")
+    air_density_kgm3: Annotated[float, between(1e-3, 100.0)] = key(1.225, "of the air that the rotors move")
 
 
 class Disturbance(Section):
     """A constant force and torque on the UAV that no model knows of."""
 
-    force_n: Force3 = Field((0.0, 0.0, 0.0), description="at the centre of mass, world axes")
-    torque_nm: Torque3 = Field((0.0, 0.0, 0.0), description="body axes")
+    force_n: of.Force3 = key((0.0, 0.0, 0.0), "at the centre of mass, world axes")
+    torque_nm: of.Torque3 = key((0.0, 0.0, 0.0), "body axes")

@@ -2,9 +2,10 @@
 
 from typing import Annotated, Literal, NamedTuple, get_args
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from armland.scenario.quantities import Direction, PositiveSeconds, Seconds, Section, between
+from armland.scenario import quantities as of
+from armland.scenario.quantities import Section, between, key
 
 FailureKind = Literal[
     "link_loss",
@@ -61,42 +62,37 @@ class Fault(Section):
     """One failure: when it begins, how long it lasts, how bad it is."""
 
     kind: FailureKind = Field(description="what fails")
-    phase: Annotated[str, Field(max_length=60)] | None = Field(
-        None, description="phase at whose begin it is armed; the run's begin if absent"
+    phase: Annotated[str, Field(max_length=60)] | None = key(
+        None, "phase at whose begin it is armed; the run's begin if absent"
     )
-    after_s: Seconds = Field(0.0, description="time from there")
-    lasts_s: PositiveSeconds = Field(3600.0, description="how long it lasts")
-    rotor: Annotated[int, Field(ge=1, le=4)] = Field(1, description="number of the rotor; only for `rotor_loss`")
-    size: Annotated[float, between(-1e4, 1e4)] = Field(
+    after_s: of.Seconds = key(0.0, "time from there")
+    lasts_s: of.PositiveSeconds = key(3600.0, "how long it lasts")
+    rotor: Annotated[int, Field(ge=1, le=4)] = key(1, "number of the rotor; only for `rotor_loss`")
+    size: Annotated[float, between(-1e4, 1e4)] = key(
         1.0,
-        description="drift in N/s, coil or magnet or rotor's share that is lost, load or push in N, twist in N·m, distance in m, "
+        "drift in N/s, coil or magnet or rotor's share that is lost, load or push in N, twist in N·m, distance in m, "
         "offset in rad; not used by the others",
     )
-    direction: Direction = Field(
+    direction: of.Direction = key(
         (0.0, 0.0, 1.0),
-        description="components of the direction of a push, the axis of a twist or of an attitude offset, or the direction of an "
+        "components of the direction of a push, the axis of a twist or of an attitude offset, or the direction of an "
         "unreachable UAV, world; its length scales the size",
     )
-    device: Literal["encoders", "wrench", "attitude", "camera"] = Field(
-        "encoders", description="whose samples are not finite"
-    )
-    body: Literal["uav", "tool", "elbow"] = Field("tool", description="what is pushed; the tool is beyond the sensor")
-    joint: Annotated[int, Field(ge=1, le=64)] = Field(1, description="number of the joint whose encoder is off, from 1")
+    device: Literal["encoders", "wrench", "attitude", "camera"] = key("encoders", "whose samples are not finite")
+    body: Literal["uav", "tool", "elbow"] = key("tool", "what is pushed; the tool is beyond the sensor")
+    joint: Annotated[int, Field(ge=1, le=64)] = key(1, "number of the joint whose encoder is off, from 1")
 
-    @model_validator(mode="after")
-    def _makes_sense(self) -> "Fault":
+    def _contradictions(self) -> list[str]:
         shape, problems = SHAPES[self.kind], []
         if shape.unit == "share" and not 0.0 < self.size <= 1.0:
             problems.append(f"size = {self.size:g} is the share that `{self.kind}` takes: above 0, at most 1")
         if "direction" in shape.keys and not any(self.direction):
             problems.append("direction = [0, 0, 0] points nowhere; [0, 0, 1] points upwards")
-        for key in ("rotor", "direction", "device", "body", "joint"):
-            if key not in shape.keys and getattr(self, key) != type(self).model_fields[key].default:
+        for name in ("rotor", "direction", "device", "body", "joint"):
+            if name not in shape.keys and getattr(self, name) != type(self).model_fields[name].default:
                 problems.append(
-                    f"{key} has no effect on `{self.kind}`; it uses {', '.join(shape.keys) or 'none of these'}"
+                    f"{name} has no effect on `{self.kind}`; it uses {', '.join(shape.keys) or 'none of these'}"
                 )
         if not shape.unit and self.size != 1.0:
             problems.append(f"size has no effect on `{self.kind}`")
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+        return problems

@@ -5,10 +5,10 @@ is a slip of units or of the keyboard. Both bounds belong to the range: what a m
 number's type and nowhere else: pydantic lets one beside the default be overruled by the type's.
 """
 
-from typing import Annotated
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 
 class Section(BaseModel):
@@ -16,10 +16,33 @@ class Section(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
+    rising: ClassVar[tuple[tuple[str, str, str], ...]] = ()
+    """A key, another that must be above it, and why where that is not plain."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if found := self._contradictions():
+            raise ValueError("\n".join(found))
+        return self
+
+    def _contradictions(self) -> list[str]:
+        # A line for each; a section may have more of them.
+        found = []
+        for low, high, why in self.rising:
+            a, b = getattr(self, low), getattr(self, high)
+            if a >= b:
+                found.append(f"{low} = {a:g} must be below {high} = {b:g}{why and f': {why}'}")
+        return found
+
 
 def between(low: float, high: float) -> object:
     """The finite numbers from `low` to `high`, both included, as pydantic's annotation of a type."""
     return Field(ge=low, le=high, allow_inf_nan=False)
+
+
+def key(default: Any, meaning: str) -> Any:
+    """A key of a section: its default, what it means, and its unit where the type does not say it."""
+    return Field(default, description=meaning)
 
 
 Fraction = Annotated[float, between(0.0, 1.0)]

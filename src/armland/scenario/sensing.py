@@ -2,26 +2,10 @@
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from armland.scenario.quantities import (
-    Degrees,
-    Distance,
-    Factor,
-    Force,
-    Force3,
-    Fraction,
-    Hertz,
-    Length,
-    Milliseconds,
-    Point,
-    Section,
-    Sigma,
-    Tilt,
-    Torque,
-    Torque3,
-    between,
-)
+from armland.scenario import quantities as of
+from armland.scenario.quantities import Section, between, key
 
 View = Annotated[float, between(1.0, 170.0)]
 SmallAngle = Annotated[float, between(0.0, 45.0)]
@@ -30,50 +14,41 @@ SmallAngle = Annotated[float, between(0.0, 45.0)]
 class Sensors(Section):
     """Standard deviations of white noise, and the force-torque sensor's filter and bias."""
 
-    joint_position_rad: Sigma = Field(1e-5, description="noise of a joint's encoder")
-    joint_velocity_rad_s: Sigma = Field(1e-3, description="noise of a joint's speed")
-    force_n: Sigma = Field(0.05, description="noise of the force-torque sensor, each axis, before its filter")
-    torque_nm: Sigma = Field(0.002, description="likewise")
-    force_bias_n: Force3 = Field((0.0, 0.0, 0.0), description="beyond the one that is drawn; sensor axes")
-    torque_bias_nm: Torque3 = Field((0.0, 0.0, 0.0), description="likewise")
-    force_filter_hz: Hertz = Field(100.0, description="cut-off of the force-torque sensor's first-order low-pass")
-    attitude_rad: Sigma = Field(2e-3, description="noise of the attitude that the UAV sends, each axis")
-    rate_rad_s: Sigma = Field(1e-2, description="noise of its angular velocity, each axis")
+    joint_position_rad: of.Sigma = key(1e-5, "noise of a joint's encoder")
+    joint_velocity_rad_s: of.Sigma = key(1e-3, "noise of a joint's speed")
+    force_n: of.Sigma = key(0.05, "noise of the force-torque sensor, each axis, before its filter")
+    torque_nm: of.Sigma = key(0.002, "likewise")
+    force_bias_n: of.Force3 = key((0.0, 0.0, 0.0), "beyond the one that is drawn; sensor axes")
+    torque_bias_nm: of.Torque3 = key((0.0, 0.0, 0.0), "likewise")
+    force_filter_hz: of.Hertz = key(100.0, "cut-off of the force-torque sensor's first-order low-pass")
+    attitude_rad: of.Sigma = key(2e-3, "noise of the attitude that the UAV sends, each axis")
+    rate_rad_s: of.Sigma = key(1e-2, "noise of its angular velocity, each axis")
 
 
 class Camera(Section):
     """Camera on the tool and marker under the UAV. Both beside the axis, on the same side, so that it sees until contact."""
 
-    position_m: Point = Field(
-        (0.075, 0.0, -0.10), description="optical centre, end effector frame; it looks along its z"
+    position_m: of.Point = key((0.075, 0.0, -0.10), "optical centre, end effector frame; it looks along its z")
+    marker_m: of.Point = key((0.075, 0.0, -0.03), "marker's centre from the centre of mass, body; it looks down")
+    marker_size_m: of.Length = key(0.06, "edge of the black square")
+    rate_hz: Annotated[int, Field(ge=1, le=1000)] = key(30, "images a second, at most the base rate")
+    delay_ms: tuple[of.Milliseconds, of.Milliseconds] = key(
+        (50.0, 75.0), "from exposure to arrival, uniform; tum_ardrone's video delay is the upper end"
     )
-    marker_m: Point = Field(
-        (0.075, 0.0, -0.03), description="marker's centre from the centre of mass, body; it looks down"
-    )
-    marker_size_m: Length = Field(0.06, description="edge of the black square")
-    rate_hz: Annotated[int, Field(ge=1, le=1000)] = Field(30, description="images a second, at most the base rate")
-    delay_ms: tuple[Milliseconds, Milliseconds] = Field(
-        (50.0, 75.0), description="from exposure to arrival, uniform; tum_ardrone's video delay is the upper end"
-    )
-    field_of_view_deg: tuple[View, View] = Field((60.0, 48.0), description="full angles in image x and y; common lens")
-    depth_min_m: Length = Field(0.05, description="closest focus; assumption")
-    depth_max_per_size: Factor = Field(
-        1.1 / 0.04, description="ratio of the largest depth to the marker's size, family 36h11"
-    )
-    incidence_max_deg: Tilt = Field(25.0, description="largest angle of sight to the marker's normal")
-    reference_m: tuple[Length, Length] = Field((0.3, 1.0), description="depths of the two published precisions")
-    lateral_m: tuple[Length, Length] = Field((0.4e-3, 0.7e-3), description="rc_visard manual, at the two depths")
-    depth_m: tuple[Length, Length] = Field((0.9e-3, 3.3e-3), description="likewise, along the optical axis")
-    focal_px: Annotated[float, between(1.0, 1e6)] = Field(
-        1078.0, description="focal length in pixels: 960 over 48 degrees"
-    )
-    exposure_s: Annotated[float, between(0.0, 1.0)] = Field(4.0e-3, description="time of an exposure; assumption")
-    honesty: Annotated[float, between(0.0, 100.0)] = Field(1.0, description="factor: real noise over claimed noise")
-    lose: Fraction = Field(0.02, description="probability of a drop-out after a found marker; assumption")
-    stay_lost: Fraction = Field(0.5, description="probability that a drop-out lasts another image; assumption")
+    field_of_view_deg: tuple[View, View] = key((60.0, 48.0), "full angles in image x and y; common lens")
+    depth_min_m: of.Length = key(0.05, "closest focus; assumption")
+    depth_max_per_size: of.Factor = key(1.1 / 0.04, "ratio of the largest depth to the marker's size, family 36h11")
+    incidence_max_deg: of.Tilt = key(25.0, "largest angle of sight to the marker's normal")
+    reference_m: tuple[of.Length, of.Length] = key((0.3, 1.0), "depths of the two published precisions")
+    lateral_m: tuple[of.Length, of.Length] = key((0.4e-3, 0.7e-3), "rc_visard manual, at the two depths")
+    depth_m: tuple[of.Length, of.Length] = key((0.9e-3, 3.3e-3), "likewise, along the optical axis")
+    focal_px: Annotated[float, between(1.0, 1e6)] = key(1078.0, "focal length in pixels: 960 over 48 degrees")
+    exposure_s: Annotated[float, between(0.0, 1.0)] = key(4.0e-3, "time of an exposure; assumption")
+    honesty: Annotated[float, between(0.0, 100.0)] = key(1.0, "factor: real noise over claimed noise")
+    lose: of.Fraction = key(0.02, "probability of a drop-out after a found marker; assumption")
+    stay_lost: of.Fraction = key(0.5, "probability that a drop-out lasts another image; assumption")
 
-    @model_validator(mode="after")
-    def _order(self) -> "Camera":
+    def _contradictions(self) -> list[str]:
         problems = []
         if self.delay_ms[0] > self.delay_ms[1]:
             problems.append(f"delay_ms = {list(self.delay_ms)}: the least delay stands first")
@@ -85,28 +60,22 @@ class Camera(Section):
                 f"depth_min_m = {self.depth_min_m:g} must be below depth_max_per_size x marker_size_m = {largest:g}: "
                 "the marker would be seen at no depth"
             )
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+        return problems
 
 
 class Imperfections(Section):
     """What is wrong for one seed and not for another: drawn within these bounds. Where the UAV is at the start is in `place`."""
 
-    force_bias_n: Force = Field(1.0, description="of the force-torque sensor, each axis")
-    torque_bias_nm: Torque = Field(0.05, description="each axis")
-    heading_error_deg: Degrees = Field(10.0, description="heading that the UAV believes, against the world")
-    tilt_error_deg: SmallAngle = Field(0.5, description="roll and pitch that the UAV believes")
-    thrust_error: Annotated[float, between(0.0, 0.9)] = Field(
-        0.05, description="thrust given over thrust asked for, less one: a share of it"
+    force_bias_n: of.Force = key(1.0, "of the force-torque sensor, each axis")
+    torque_bias_nm: of.Torque = key(0.05, "each axis")
+    heading_error_deg: of.Degrees = key(10.0, "heading that the UAV believes, against the world")
+    tilt_error_deg: SmallAngle = key(0.5, "roll and pitch that the UAV believes")
+    thrust_error: Annotated[float, between(0.0, 0.9)] = key(
+        0.05, "thrust given over thrust asked for, less one: a share of it"
     )
-    hover_noise_m: Distance = Field(
-        0.01, description="white noise of the position that the UAV believes in its own hover"
-    )
-    camera: bool = Field(True, description="noise, delay and drop-outs of the camera; false: exact, at once")
-    camera_mount_m: Distance = Field(0.0005, description="error of camera's and marker's place together, each axis")
-    camera_angle_deg: SmallAngle = Field(0.1, description="error of the direction in which it looks, x and y")
-    camera_scale: Annotated[float, between(0.0, 0.5)] = Field(
-        0.003, description="error of its focal length, as a share of it"
-    )
-    noise: bool = Field(True, description="white noise of encoders, force-torque sensor and attitude")
+    hover_noise_m: of.Distance = key(0.01, "white noise of the position that the UAV believes in its own hover")
+    camera: bool = key(True, "noise, delay and drop-outs of the camera; false: exact, at once")
+    camera_mount_m: of.Distance = key(0.0005, "error of camera's and marker's place together, each axis")
+    camera_angle_deg: SmallAngle = key(0.1, "error of the direction in which it looks, x and y")
+    camera_scale: Annotated[float, between(0.0, 0.5)] = key(0.003, "error of its focal length, as a share of it")
+    noise: bool = key(True, "white noise of encoders, force-torque sensor and attitude")

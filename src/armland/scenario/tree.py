@@ -4,8 +4,9 @@ import json
 import re
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, PrivateAttr, ValidationError, model_validator
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
+from armland.scenario import quantities as of
 from armland.scenario.arm import Arm, Tool
 from armland.scenario.control import Control, Experiment
 from armland.scenario.environment import Disturbance, Environment
@@ -13,7 +14,7 @@ from armland.scenario.estimation import Estimation
 from armland.scenario.faults import Fault
 from armland.scenario.gear import Cradle, Hinge, Magnet, Plate, Skids
 from armland.scenario.mission import Bounds, Limits, Place, Run, Trajectory
-from armland.scenario.quantities import Section, Text
+from armland.scenario.quantities import Section, key
 from armland.scenario.refusal import problems, refusal
 from armland.scenario.sensing import Camera, Imperfections, Sensors
 from armland.scenario.tables import as_json, orderly, update
@@ -55,8 +56,8 @@ FileName = Annotated[str, AfterValidator(_file_name)]
 class Scenario(Section):
     """A whole scenario. Sections have the same names as the parts that they describe."""
 
-    title: Annotated[str, Field(max_length=200)] = Field("untitled", description="of figures and reports")
-    calibration: Text | None = Field(None, description="file of calibrated values, relative to the scenario's folder")
+    title: Annotated[str, Field(max_length=200)] = key("untitled", "of figures and reports")
+    calibration: of.Text | None = key(None, "file of calibrated values, relative to the scenario's folder")
     run: Run = Run()
     arm: Arm = Arm()
     tool: Tool = Tool()
@@ -79,12 +80,12 @@ class Scenario(Section):
     place: Place = Place()
     bounds: Bounds = Bounds()
     limits: Limits = Limits()
-    trajectory: Trajectory | None = Field(None, description="path of the missions that follow one")
-    harder: Trajectory | None = Field(None, description="second path for the comparison of laws")
+    trajectory: Trajectory | None = key(None, "path of the missions that follow one")
+    harder: Trajectory | None = key(None, "second path for the comparison of laws")
     experiments: Annotated[dict[FileName, Experiment], Field(max_length=100)] = Field(
         default_factory=dict, description="controllers to try; the name of each is part of its results' file names"
     )
-    faults: Annotated[tuple[Fault, ...], Field(max_length=100)] = Field((), description="what fails in the plant")
+    faults: Annotated[tuple[Fault, ...], Field(max_length=100)] = key((), "what fails in the plant")
     belief: dict[str, dict[str, Any]] = Field(
         default_factory=dict,
         description="what the controller takes for true of the hardware where that differs: tables with the hardware's names",
@@ -144,9 +145,8 @@ class Scenario(Section):
         other._text, other._overrides, other._own = self._text, self._overrides, self._own
         return other
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "Scenario":
-        found = [*_rate_problems(self), *_threshold_problems(self)]
+    def _contradictions(self) -> list[str]:
+        found = _problems(self)
         known = f"no section of the hardware; those are {', '.join(HARDWARE)}"
         found += [f"belief.{name}: {known}" for name in self.belief if name not in HARDWARE]
         if self.belief and not found:
@@ -154,12 +154,11 @@ class Scenario(Section):
                 Scenario.model_validate_json(self._belief())
             except ValidationError as e:
                 found = [f"belief.{line}" for line in problems(e, Scenario)]
-        if found:
-            raise ValueError("\n".join(found))
-        return self
+        return found
 
 
-def _rate_problems(s: Scenario) -> list[str]:
+def _problems(s: Scenario) -> list[str]:
+    # What contradicts itself across sections.
     problems, rate = [], s.run.rate_hz
     devices = {"onboard.rate_hz": s.onboard.rate_hz, "link.rate_hz": s.link.rate_hz}
     devices["control.station.rate_hz"] = s.control.station.rate_hz
@@ -176,23 +175,10 @@ def _rate_problems(s: Scenario) -> list[str]:
         problems.append(
             f"control.thrust_n = {s.control.thrust_n:g} N is beyond the four rotors, which give {low:g} to {high:g} N"
         )
-    return problems
-
-
-def _threshold_problems(s: Scenario) -> list[str]:
-    problems, b, p, carried = [], s.bounds, s.place, 1.0 - s.control.thrust.carry_share
-    if b.lost_offset_m <= b.align_offset_m:
+    carried = 1.0 - s.control.thrust.carry_share
+    if s.bounds.share_carried >= carried:
         problems.append(
-            f"bounds.lost_offset_m = {b.lost_offset_m:g} must exceed bounds.align_offset_m = {b.align_offset_m:g}: "
-            "closing would be given up where it begins"
-        )
-    if b.pull_seen_n >= b.pull_test_n:
-        problems.append(f"bounds.pull_seen_n = {b.pull_seen_n:g} must be below bounds.pull_test_n = {b.pull_test_n:g}")
-    if b.share_carried >= carried:
-        problems.append(
-            f"bounds.share_carried = {b.share_carried:g} must be below 1 - control.thrust.carry_share = {carried:g}: "
+            f"bounds.share_carried = {s.bounds.share_carried:g} must be below 1 - control.thrust.carry_share = {carried:g}: "
             "the rotors carry the rest"
         )
-    if p.standoff_m >= p.wait_below_m:
-        problems.append(f"place.standoff_m = {p.standoff_m:g} must be below place.wait_below_m = {p.wait_below_m:g}")
     return problems

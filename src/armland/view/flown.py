@@ -9,15 +9,13 @@ from numpy.typing import NDArray
 from armland.experiments.judge.brief import Brief, brief_of
 from armland.runtime.log import Log
 
-Ticks = Mapping[str, NDArray[np.void]]
-"""Messages by name, (ticks,) each."""
+Ticks = Mapping[str, NDArray[np.void]]  # Messages by name, (ticks,) each
 
 
 class Flown(NamedTuple):
     """A run."""
 
-    name: str
-    """Of the experiment, or of the mission where it has none."""
+    name: str  # Of the experiment, or of the mission where it has none
     ticks: Ticks
     brief: Brief
 

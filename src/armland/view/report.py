@@ -52,8 +52,7 @@ def draw(out: Path, logs: Sequence[Log]) -> list[Path]:
         PictureError: no OpenGL for the picture of the scene; the other figures are there then.
     """
     from armland.view.figures.flight import draw_flight
-    from armland.view.figures.paper import draw_paper_figures
-    from armland.view.figures.scene import draw_scene
+    from armland.view.figures.paper import draw_paper_figures, draw_scene
 
     with _doubted():
         runs = [flown(log) for log in logs]

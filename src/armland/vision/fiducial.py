@@ -8,7 +8,7 @@
 | u = (f_x X/Z + c_x, f_y Y/Z + c_y) | pinhole without distortion, (X, Y, Z) in frame c; `Intrinsics` | px |
 | s | `size_m`, edge of the black square | m |
 
-Frames are those of `armland.plant.camera`, whose measurement model stands for this detector wherever rendering is too slow.
+Frames are those of `plant.devices.camera`, whose measurement model stands for this detector wherever rendering is too slow.
 Source: Olson, AprilTag, ICRA 2011 (family); Collins and Bartoli, Infinitesimal Plane-Based Pose Estimation, IJCV 2014 (both
 poses of a square); OpenCV's `aruco` for finding and reading the marker.
 """
@@ -23,18 +23,14 @@ from armland.errors import ArmlandError
 from armland.rotations import Array, from_rotation_vector, matrix
 from armland.vision.square import refined
 
-CELLS = 8
-"""Cells along the black square: six of code within a border of one."""
-
-MARKERS = 587
-"""Markers in the family."""
+CELLS = 8  # Cells along the black square: six of code within a border of one
+MARKERS = 587  # Markers in the family
 
 
 SHAKES_PX = 1e-3 * np.array([[[9, -3], [1, 7], [-8, 2], [4, -6]], [[-2, 5], [8, 3], [1, -9], [-6, 4]]]) / 9.0
 """Tenths of what corners are good to, and of no symmetry, px."""
 
-RESIDUAL_MAX_PX = 0.3
-"""Ten times what corners are good to: where it is more, mostly something lies over an edge."""
+RESIDUAL_MAX_PX = 0.3  # Ten times what corners are good to: where it is more, mostly something lies over an edge
 
 
 class Intrinsics(NamedTuple):

@@ -21,14 +21,12 @@ from armland.vision.study import draw_motion, marker_study
 
 FIT_DISTANCES_M = (0.13, 0.16, 0.2, 0.25, 0.3, 0.38, 0.48, 0.6, 0.75, 0.95, 1.2, 1.5)
 
-FAR_M = 4.5
-"""Largest distance of the pictures of loss: there a cell has 1.8 px."""
+FAR_M = 4.5  # Largest distance of the pictures of loss: there a cell has 1.8 px
 
 SMEAR_CELLS = 3.0
 """Largest smear of the pictures of loss, in cells of the marker, of which half are drawn from; the others are at rest."""
 
-SMEAR_PX = 30.0
-"""And in pixels: beyond, nothing is found anyway."""
+SMEAR_PX = 30.0  # And in pixels: beyond, nothing is found anyway
 
 RIDGE = 1e-3
 
@@ -65,12 +63,10 @@ def error_laws(errors: NDArray[np.void]) -> tuple[PowerLaw, PowerLaw, PowerLaw, 
     return laws[0], laws[1], laws[2], laws[3]
 
 
-def loss_study(
-    images: int, seed: int, imaging: Imaging | None = None, scene: MarkerScene | None = None
-) -> tuple[NDArray[np.bool_], Array, Array]:
+def loss_study(images: int, seed: int, scene: MarkerScene | None = None) -> tuple[NDArray[np.bool_], Array, Array]:
     """Pictures far and near, still and smeared: was the marker found (n,), width of its cells (n,) px, smear (n,) px."""
     # Enough steps that a smear is no row of ghosts.
-    imaging, scene = (imaging or Imaging())._replace(substeps=25), scene or build_marker_scene()
+    imaging, scene = Imaging(substeps=25), scene or build_marker_scene()
     places, grain, k = stream(seed, "loss poses"), stream(seed, "loss images"), scene.intrinsics
     camera = Camera(marker_size_m=scene.size_m)
     motions = [_draw(scene, camera, imaging, i % 2 == 0, places) for i in range(images)]

@@ -1,35 +1,24 @@
-"""Many grey pictures of one scene, as a camera on it would take them, drawn in one child process: all at once, or one by one.
-
-`armland.vision.picture` draws one picture for the eye; here, starting a child for each would take longest.
-"""
+"""Pictures of one scene, as a camera on it would take them, drawn by one child process, each when it is asked for."""
 
 import contextlib
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+import threading
 from pathlib import Path
-from typing import Any
 
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from armland.errors import PictureError
-from armland.vision.opengl import (
-    SUPERSAMPLING,
-    backends,
-    check,
-    command,
-    draw_in_child,
-    environment,
-    last_line,
-    refusal,
-)
+from armland.vision import opengl
 
-TIMEOUT_S = 600.0
+READY = b"ready"  # What the child says when it can draw
+TIMEOUT_S = 120.0  # The longest that a picture may take
 
-MODULE = "armland.vision.frames"
+SUPERSAMPLING = 2
+"""Rendered pixels per pixel and direction: a real pixel, too, collects light from all of its area, and edges become smooth."""
 
 
 def frames(model: mujoco.MjModel, qpos: ArrayLike, width: int, height: int, camera: str) -> NDArray[np.uint8]:
@@ -41,58 +30,59 @@ def frames(model: mujoco.MjModel, qpos: ArrayLike, width: int, height: int, came
     """
     poses = np.atleast_2d(np.asarray(qpos, dtype=float))
     for q in poses:
-        check(model, q, width, height, camera)
-    with tempfile.TemporaryDirectory(prefix="armland-") as name:
-        folder = Path(name)
-        _store(folder, model, poses, width, height, camera)
-        draw_in_child(MODULE, folder, TIMEOUT_S)
-        pictures: NDArray[np.uint8] = np.load(folder / "frames.npy")
-        return pictures
+        opengl.check(model, q, width, height, camera)
+    with FrameStream(model, width, height, camera) as stream:
+        return np.array([stream.draw(q) for q in poses])
 
 
 class FrameStream:
-    """Grey pictures one after the other, each when it is asked for; a child process draws them. Use it in a `with` statement.
+    """Pictures one after the other, each when it is asked for; a child process draws them. Use it in a `with` statement.
 
     Args:
         model: the scene.
         width: px.
         height: px.
         camera: name of the model's camera.
+        coloured: whether pictures have colours and shadows.
 
     Raises:
         PictureError: as for `frames`, on entry.
     """
 
-    def __init__(self, model: mujoco.MjModel, width: int, height: int, camera: str) -> None:
-        self.model, self.width, self.height, self.camera = model, width, height, camera
+    def __init__(self, model: mujoco.MjModel, width: int, height: int, camera: str, coloured: bool = False) -> None:
+        self.model, self.width, self.height, self.camera, self.coloured = model, width, height, camera, coloured
+        self._shape = (height, width, 3) if coloured else (height, width)
         self._child: subprocess.Popen[bytes] | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
 
     def __enter__(self) -> "FrameStream":
-        check(self.model, self.model.qpos0, self.width, self.height, self.camera)
+        opengl.check(self.model, self.model.qpos0, self.width, self.height, self.camera)
         self._folder = tempfile.TemporaryDirectory(prefix="armland-")
         folder = Path(self._folder.name)
-        _store(folder, self.model, np.zeros((0, self.model.nq)), self.width, self.height, self.camera)
+        mujoco.mj_saveModel(self.model, str(folder / "scene.mjb"), None)
+        # Without -P a folder named `mujoco` where the user stands would be imported in its place.
+        command = [sys.executable, "-P", "-m", "armland.vision.frames", str(folder), self.camera]
+        command += [str(self.width), str(self.height), "coloured" if self.coloured else "grey"]
         complaints = []
-        for backend in backends():
+        for backend in opengl.backends():
             with open(folder / "errors.txt", "wb") as errors:
                 self._child = subprocess.Popen(
-                    command(MODULE, str(folder), "stream"),
-                    env=environment(backend),
+                    command,
+                    env=opengl.environment(backend),
                     stdin=subprocess.PIPE,
                     stdout=subprocess.PIPE,
                     stderr=errors,
                 )
             try:
-                self.draw(self.model.qpos0)
+                self._read(len(READY))
             except PictureError:
                 self._end()
                 said = (folder / "errors.txt").read_text("utf-8", "replace")
-                complaints.append(f"{backend or 'default'}: {last_line(said, self._child.returncode)}")
+                complaints.append(f"{backend or 'default'}: {opengl.last_line(said, self._child.returncode)}")
                 continue
             return self
         self._folder.cleanup()
-        raise refusal(complaints)
+        raise opengl.refusal(complaints)
 
     def __exit__(self, *_: object) -> None:
         self._end()
@@ -100,23 +90,30 @@ class FrameStream:
         self._folder.cleanup()
 
     def draw(self, qpos: ArrayLike) -> NDArray[np.uint8]:
-        """Grey picture (height, width) at `qpos` (nq,), m and rad.
+        """Picture (height, width), or (height, width, 3) in colour, at `qpos` (nq,), m and rad.
 
         Raises:
-            PictureError: the child process has died.
+            PictureError: the child process has died, or gives no picture within `TIMEOUT_S`.
         """
         assert self._child is not None
         assert self._child.stdin is not None
-        assert self._child.stdout is not None
         try:
             self._child.stdin.write(np.ascontiguousarray(qpos, dtype=float).tobytes())
             self._child.stdin.flush()
         except OSError as e:
             raise PictureError(f"the process that draws pictures has ended: {e.strerror}") from e
-        pixels = self._child.stdout.read(self.width * self.height)
-        if len(pixels) != self.width * self.height:
+        return np.frombuffer(self._read(int(np.prod(self._shape))), np.uint8).reshape(self._shape)
+
+    def _read(self, size: int) -> bytes:
+        assert self._child is not None
+        assert self._child.stdout is not None
+        patience = threading.Timer(TIMEOUT_S, self._child.kill)
+        patience.start()
+        said = self._child.stdout.read(size)
+        patience.cancel()
+        if len(said) != size:
             raise PictureError("the process that draws pictures has ended in the middle of one")
-        return np.frombuffer(pixels, np.uint8).reshape(self.height, self.width)
+        return said
 
     def _end(self) -> None:
         child = self._child
@@ -132,56 +129,34 @@ class FrameStream:
             child.wait()
 
 
-def _store(folder: Path, model: mujoco.MjModel, qpos: NDArray[Any], width: int, height: int, camera: str) -> None:
-    mujoco.mj_saveModel(model, str(folder / "scene.mjb"), None)
-    np.savez(folder / "view.npz", qpos=qpos, size=[width, height], camera=camera)
-
-
-@contextlib.contextmanager
-def _painter(folder: Path) -> Iterator[tuple[int, Callable[[NDArray[Any]], NDArray[np.uint8]]]]:
-    """The child's part: nq of `scene.mjb` in `folder`, and what draws a picture at a qpos, as `view.npz` there says."""
-    model = mujoco.MjModel.from_binary_path(str(folder / "scene.mjb"))
-    with np.load(folder / "view.npz") as view:
-        (width, height), camera = view["size"].tolist(), str(view["camera"])
-    k = SUPERSAMPLING
+def stream(folder: str, camera: str, width: int, height: int, coloured: bool) -> None:
+    """The child's part: a picture of `scene.mjb` in `folder` on standard output for every qpos on standard input."""
+    model, k = mujoco.MjModel.from_binary_path(f"{folder}/scene.mjb"), SUPERSAMPLING
     model.vis.global_.offwidth, model.vis.global_.offheight = k * width, k * height
-    # OpenGL's own smoothing is of edges only; supersampling also smooths what is printed on a face.
-    model.vis.quality.offsamples = 0
+    if not coloured:
+        # OpenGL's own smoothing is of edges only; supersampling also smooths what is printed on a face.
+        model.vis.quality.offsamples = 0
     data, option = mujoco.MjData(model), mujoco.MjvOption()
+    # Sites are marks for sensors, not things that one would see.
     option.sitegroup[:] = 0
     with mujoco.Renderer(model, k * height, k * width) as renderer:
-
-        def paint(qpos: NDArray[Any]) -> NDArray[np.uint8]:
-            data.qpos[:] = qpos
+        # An empty picture shows that this OpenGL draws.
+        renderer.render()
+        sys.stdout.buffer.write(READY)
+        sys.stdout.buffer.flush()
+        while len(raw := sys.stdin.buffer.read(8 * model.nq)) == 8 * model.nq:
+            data.qpos[:] = np.frombuffer(raw)
             mujoco.mj_forward(model, data)
             renderer.update_scene(data, camera, option)
-            renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
+            renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] &= coloured
             # A grey sensor sees best what is green.
-            green = renderer.render()[..., 1].astype(np.uint16)
-            total = sum((green[i::k, j::k] for i in range(k) for j in range(k)), np.zeros((height, width), np.uint16))
-            return np.asarray((total + k * k // 2) // (k * k), np.uint8)
-
-        yield model.nq, paint
-
-
-def draw(folder: Path) -> None:
-    """The child's part: draw `scene.mjb` at each qpos of `view.npz` into `frames.npy`, all in `folder`."""
-    with np.load(folder / "view.npz") as view:
-        qpos, (width, height) = view["qpos"], view["size"].tolist()
-    pictures = np.empty((len(qpos), height, width), np.uint8)
-    with _painter(folder) as (_, paint):
-        for q, picture in zip(qpos, pictures, strict=True):
-            picture[:] = paint(q)
-    np.save(folder / "frames.npy", pictures)
-
-
-def stream(folder: Path) -> None:
-    """The child's part: a picture on standard output for every qpos on standard input."""
-    with _painter(folder) as (nq, paint):
-        while len(raw := sys.stdin.buffer.read(8 * nq)) == 8 * nq:
-            sys.stdout.buffer.write(paint(np.frombuffer(raw)).tobytes())
+            pixels = renderer.render().astype(np.uint16)[..., slice(None) if coloured else 1]
+            total = sum((pixels[i::k, j::k] for i in range(k) for j in range(k)), np.zeros_like(pixels[::k, ::k]))
+            mean = np.rint(total / k**2) if coloured else (total + k**2 // 2) // k**2
+            sys.stdout.buffer.write(mean.astype(np.uint8).tobytes())
             sys.stdout.buffer.flush()
 
 
 if __name__ == "__main__":
-    (stream if sys.argv[2:] == ["stream"] else draw)(Path(sys.argv[1]))
+    folder, camera, width, height, kind = sys.argv[1:]
+    stream(folder, camera, int(width), int(height), kind == "coloured")

@@ -26,10 +26,8 @@ class Imaging(NamedTuple):
 
     lens_px: float = 0.6
     """Standard deviation of the lens's blur in focus: about 30 % contrast at half the sampling frequency."""
-    focal_m: float = 4.0e-3
-    """With pixels of 3.75 µm, 1280 by 960 of a common 1/3 inch sensor, the 48 degrees of view."""
-    f_number: float = 8.0
-    """Stopped down, as the marker must be sharp from 0.13 m to 1 m."""
+    focal_m: float = 4.0e-3  # With pixels of 3.75 µm, 1280 by 960 of a common 1/3 inch sensor, the 48 degrees of view
+    f_number: float = 8.0  # Stopped down, as the marker must be sharp from 0.13 m to 1 m
     focus_m: float = 0.25
     exposure_s: float = 4.0e-3
     """What f/8 needs under 500 lx (EN 12464-1, assembly work) with a gain; shorter with a lamp."""
@@ -38,8 +36,7 @@ class Imaging(NamedTuple):
     """Largest change of the light from the picture's middle to its edge, as a fraction; direction and size are drawn."""
     dimmest: float = 0.4
     """Least exposure, as a share of the renderer's; drawn between that and 1: the UAV shades its own underside."""
-    read_noise: float = 1.2
-    """Grey levels of 255."""
+    read_noise: float = 1.2  # Grey levels of 255
     full_well_e: float = 5000.0
     """Electrons at grey 255: half the well of a 3.75 µm pixel, as with a gain of 6 dB. 2.5 grey levels of noise in mid grey."""
 
@@ -54,14 +51,10 @@ class Calibration(NamedTuple):
     """Standard deviations of what an intrinsic calibration leaves. Assumptions of the size that bundle adjustments of 20 to 50
     pictures of a board state for themselves, doubled."""
 
-    focal: float = 1.5e-3
-    """Share of the focal length: 0.15 %."""
-    aspect: float = 3e-4
-    """Share by which f_x and f_y err apart."""
-    centre_px: float = 0.4
-    """Principal point, each axis."""
-    corner_px: float = 0.3
-    """Distortion that is left in the picture's corners, radial."""
+    focal: float = 1.5e-3  # Share of the focal length: 0.15 %
+    aspect: float = 3e-4  # Share by which f_x and f_y err apart
+    centre_px: float = 0.4  # Principal point, each axis
+    corner_px: float = 0.3  # Distortion that is left in the picture's corners, radial
 
 
 class Unit(NamedTuple):

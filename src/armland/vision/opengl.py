@@ -5,10 +5,7 @@ driver can end the process. A child can be given the right variable, and its dea
 """
 
 import os
-import subprocess
 import sys
-from collections.abc import Sequence
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -16,11 +13,7 @@ from numpy.typing import NDArray
 
 from armland.errors import PictureError
 
-MAX_PIXELS = 4096
-"""Largest width and height of a picture."""
-
-SUPERSAMPLING = 2
-"""Rendered pixels per pixel and direction: a real pixel, too, collects light from all of its area, and edges become smooth."""
+MAX_PIXELS = 4096  # Largest width and height of a picture
 
 REMEDY = "install EGL (Debian, Ubuntu: apt-get install libegl1 libopengl0) or OSMesa (apt-get install libosmesa6)"
 
@@ -39,27 +32,6 @@ def environment(backend: str) -> dict[str, str]:
     return {k: v for k, v in os.environ.items() if k != "PYOPENGL_PLATFORM"} | {"MUJOCO_GL": backend}
 
 
-def command(module: str, *args: str) -> list[str]:
-    """Command of a child that runs `module` of the package."""
-    # Without -P a folder named `mujoco` where the user stands would be imported in its place.
-    return [sys.executable, "-P", "-m", module, *args]
-
-
-def draw_in_child(module: str, folder: Path, timeout_s: float) -> None:
-    """Run `module` on `folder` with the first backend that works.
-
-    Raises:
-        PictureError: none does; the message says what to install.
-    """
-    complaints = []
-    for backend in backends():
-        complaint = _attempt(module, folder, backend, timeout_s)
-        if not complaint:
-            return
-        complaints.append(f"{backend or 'default'}: {complaint}")
-    raise refusal(complaints)
-
-
 def refusal(complaints: list[str]) -> PictureError:
     """The error that says what each backend said, and what would help."""
     remedy = f"unset MUJOCO_GL, or {REMEDY}" if os.environ.get("MUJOCO_GL") else REMEDY
@@ -72,13 +44,11 @@ def last_line(said: str, code: int | None) -> str:
     return lines[-1] if lines else f"renderer ended with code {code}"
 
 
-def check(
-    model: mujoco.MjModel, qpos: NDArray[np.float64], width: int, height: int, camera: str, show: Sequence[str] = ()
-) -> None:
+def check(model: mujoco.MjModel, qpos: NDArray[np.float64], width: int, height: int, camera: str) -> None:
     """Refuse what the model cannot show.
 
     Raises:
-        PictureError: a `qpos` (nq,), a size in px, a camera or a flag that it does not have.
+        PictureError: a `qpos` (nq,), a size in px or a camera that it does not have.
     """
     if qpos.shape != (model.nq,) or not np.isfinite(qpos).all():
         raise PictureError(f"qpos has the shape {qpos.shape}; the model needs ({model.nq},), all finite")
@@ -87,29 +57,3 @@ def check(
     cameras = [model.camera(i).name for i in range(model.ncam)]
     if camera not in cameras:
         raise PictureError(f"the model has no camera {camera!r}; its cameras are: {', '.join(cameras) or 'none'}")
-    unknown = [name for name in show if name not in flags()]
-    if unknown:
-        raise PictureError(f"show: unknown {', '.join(unknown)}; known are: {', '.join(flags())}")
-
-
-def flags() -> dict[str, int]:
-    """MuJoCo's visualisation flags by name."""
-    members = mujoco.mjtVisFlag.__members__.items()
-    return {name.removeprefix("mjVIS_").lower(): int(flag) for name, flag in members if name.startswith("mjVIS_")}
-
-
-def _attempt(module: str, folder: Path, backend: str, timeout_s: float) -> str:
-    # What went wrong in one line, empty if nothing did.
-    try:
-        done = subprocess.run(
-            command(module, str(folder)),
-            env=environment(backend),
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            timeout=timeout_s,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return f"no answer within {timeout_s:g} s"
-    return "" if done.returncode == 0 else last_line(done.stderr, done.returncode)

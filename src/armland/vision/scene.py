@@ -20,18 +20,12 @@ from armland.vision.fiducial import Intrinsics, marker_image, pinhole
 HEIGHT_PX = 960
 """Of a picture; its width follows from the field of view, as pixels are square. The rc_visard's, as the published figures."""
 
-EYE = CAMERA
-"""Name of the camera."""
-
-NUMBER = 7
-"""Number of the marker on the UAV, any of the family."""
-
-CELL_PX = 32
-"""Texture pixels along a cell of the marker."""
+EYE = CAMERA  # Name of the camera
+NUMBER = 7  # Number of the marker on the UAV, any of the family
+CELL_PX = 32  # Texture pixels along a cell of the marker
 
 
-BLACK = 13
-"""Grey of the printed black, of 255: toner on paper reflects some 5 % of what paper does."""
+BLACK = 13  # Grey of the printed black, of 255: toner on paper reflects some 5 % of what paper does
 
 
 class MarkerScene(NamedTuple):

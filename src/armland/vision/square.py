@@ -18,20 +18,11 @@ from scipy.ndimage import map_coordinates
 
 from armland.rotations import Array
 
-ROUNDS = 3
-"""Every round puts the profiles where the last one found the edges."""
-
-REACH_PX = (1.5, 5.0)
-"""Least and largest L: must hold a camera's blur; more only collects noise."""
-
-REACH_CELLS = 0.6
-"""L over the width of the border, which is dark on one side of the edge and light on the other."""
-
-STEP_PX = 0.25
-"""Between the samples of a profile."""
-
-CONTRAST = 8.0
-"""Least I₊ − I₋, grey levels of 255: below, noise decides where the edge is."""
+ROUNDS = 3  # Every round puts the profiles where the last one found the edges
+REACH_PX = (1.5, 5.0)  # Least and largest L: must hold a camera's blur; more only collects noise
+REACH_CELLS = 0.6  # L over the width of the border, which is dark on one side of the edge and light on the other
+STEP_PX = 0.25  # Between the samples of a profile
+CONTRAST = 8.0  # Least I₊ − I₋, grey levels of 255: below, noise decides where the edge is
 
 
 def refined(image: NDArray[np.uint8], corners: Array, cells: int) -> Array | None:

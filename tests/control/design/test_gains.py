@@ -333,3 +333,13 @@ def test_x6_pendulum_costs_the_board_its_falling_torque():
     np.testing.assert_allclose(standing.kp - hanging.kp, [2.0 * fall, 2.0 * fall, 0.0], atol=1e-12)
     assert standing.kp[2] == none.kp[2]
     assert hanging.attitude[0].gain_down == 0.0 < standing.attitude[0].gain_down
+
+
+@pytest.mark.parametrize(
+    ("zeta", "lag", "late"), [(0.7, 0.01, 0.002), (0.8, 0.012, 0.0025), (0.9, 0.015, 0.002), (1.0, 0.015, 0.003)]
+)
+def test_x6_bandwidth_at_its_bound_is_accepted_whatever_the_rounding(zeta, lag, late):
+    """3ζω(τ + T) is a digit above 1 here, though ω is the bound itself."""
+    bound = 1.0 / (3.0 * zeta * (lag + late))
+    assert 3.0 * zeta * bound * (lag + late) > 1.0
+    assert onboard_rule(ARM, Wanted(bound, zeta), UAV, Delays(late, 0.0015, lag)).kp.min() > 0.0

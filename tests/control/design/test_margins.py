@@ -224,3 +224,11 @@ def test_eq33_position_bears_the_delay_of_a_spring_and_damper_by_hand():
     m = margins(position_loop(PUBLISHED, UAV, Delays(0.0, 0.0015, 0.0)))
     assert m.delay == pytest.approx(phase / w - 0.0015, rel=1e-4)
     assert m.phase == pytest.approx(phase - 0.0015 * w, rel=1e-4)
+
+
+def test_eq33_position_loop_is_that_of_x_whatever_the_other_axes_have():
+    k1, k2 = PUBLISHED.k1.copy(), PUBLISHED.k2.copy()
+    k1[4:], k2[4:] = [50.0, 70.0], [60.0, 80.0]
+    found = position_loop(PUBLISHED._replace(k1=k1, k2=k2), UAV, Delays(0.0, 0.0015, 0.0))
+    np.testing.assert_allclose(found.numerators[0], [44.4, 935.0])
+    np.testing.assert_allclose(found.denominator, [0.48, 0.0, 0.0])

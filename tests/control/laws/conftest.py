@@ -13,6 +13,7 @@ def bench(dynamics):
 
     from armland.control.laws import realisation, settings, table
     from armland.control.laws.rigid_body import ExactGains
+    from armland.linking import link
     from armland.models.environment import on_land
     from armland.models.parameters import arm_model, uav_parameters
     from armland.models.posture import home_poses, upright
@@ -22,6 +23,7 @@ def bench(dynamics):
 
     scenario = load_scenario("paper").believed()
     arm = arm_model(scenario)
+    link(arm.joints)
     home = home_poses(arm, None, None, realisation.elbow_of(scenario, arm))[0].q
     arm.update(home, np.zeros(arm.joints))
     R_d, c = upright(arm.rotation), scenario.control

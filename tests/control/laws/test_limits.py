@@ -129,3 +129,15 @@ def test_x4_push_turns_the_body_the_way_that_the_lost_torque_would():
         Rotation.from_euler("z", 90, degrees=True).as_matrix(), 0.0, np.array([0.1, 0, 0]), UAV.lever, 5.0
     )
     np.testing.assert_allclose(turned, [-force[1], 0.0, 0.0], atol=1e-9)
+
+
+@pytest.mark.parametrize("lever", [(0.03, 0.0, -0.06), (0.02, -0.05, 0.01), (-0.06, 0.02, 0.0)])
+def test_x4_limit_is_of_the_whole_push_whatever_way_the_lever_points(lever):
+    """A moment across the lever that would take 5 N: with 2 N two fifths of it are made."""
+    lever = np.array(lever)
+    across = np.cross(lever, [0.3, 0.5, 0.7])
+    lost = across / np.linalg.norm(across) * 5.0 * np.linalg.norm(lever)
+    for limit, size in ((2.0, 2.0), (5.5, 5.0)):
+        force, left = takeover(np.eye(3), 0.0, lost, lever, limit)
+        assert np.linalg.norm(force) == pytest.approx(size, rel=1e-9)
+        np.testing.assert_allclose(left, (1.0 - size / 5.0) * lost, atol=1e-9)

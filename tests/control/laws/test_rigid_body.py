@@ -16,8 +16,11 @@ PUBLISHED = BacksteppingGains(
 
 @pytest.mark.parametrize("gains", [PUBLISHED, ExactGains(PUBLISHED.k1, PUBLISHED.k2, 1.0, 35.0)])
 @pytest.mark.parametrize("moments", [(0.006, 0.007, 0.012), (0.006, 0.006, 0.012)])
-def test_check_accepts_the_published_values_and_a_flat_plate(gains, moments):
+def test_check_takes_the_published_values_and_a_flat_plate_and_nothing_flatter(gains, moments):
     rigid_body.check(UAV._replace(inertia=np.diag(moments)), gains)
+    flatter = np.diag([*moments[:2], 1.00001 * (moments[0] + moments[1])])
+    with pytest.raises(ModelError, match="must not exceed the sum of the others"):
+        rigid_body.check(UAV._replace(inertia=flatter), gains)
 
 
 def changed(array, index, value):

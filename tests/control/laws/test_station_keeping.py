@@ -255,3 +255,94 @@ def test_hover_under_noise(sigma_velocity):
     spread = np.sqrt(np.mean(path[5000:, :6] ** 2, axis=0))
     good = spread[:3].max() < 0.004 and spread[3:].max() < 0.006
     assert good == (sigma_velocity < 0.1)
+
+
+LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def kept_at(
+    away=(0.0, 0.0, 0.0), v=(0.0, 0.0, 0.0), q=LEVEL, v_d=(0.0, 0.0, 0.0), a_d=(0.0, 0.0, 0.0), d=(0.0, 0.0, 0.0),
+    integral=(0.0, 0.0, 0.0), **gains,
+):  # fmt: skip
+    """Force (3,), N, that thrust and attitude set-point mean, and the new integral; `away` from the reference, m."""
+    here = np.array([0.3, -0.2, 1.0])
+    vectors = [np.array(x, float) for x in (v, v_d, a_d, d, integral)]
+    reference = StationReference(here, vectors[1], vectors[2], 0.4)
+    thrust, q_d, new = keep_station(
+        here + away, vectors[0], q, reference, vectors[3], GAINS._replace(**gains), vectors[4]
+    )
+    axis = Rotation.from_quat(q_d, scalar_first=True).apply([0.0, 0.0, 1.0])
+    # On a level UAV the thrust is the force's vertical part.
+    return thrust / axis[2] * axis, new
+
+
+def test_k1_force_is_the_mass_times_what_is_wanted_by_hand():
+    """At 0.1 m along x, v_w = v_d − 0.08 m/s; a_w = a_d + 2.2 (v_w − v) + i − d; on land γ is 9.81 m/s² downwards."""
+    force, new = kept_at(
+        (0.1, 0.0, -0.05),
+        (0.02, 0.0, 0.0),
+        v_d=(0.05, 0.0, 0.0),
+        a_d=(0.2, 0.1, -0.3),
+        d=(0.3, -0.1, 0.2),
+        integral=(0.1, 0.2, 0.3),
+    )
+    error = np.array([0.05 - 0.08 - 0.02, 0.0, 0.04])
+    wanted = np.array([0.2, 0.1, -0.3]) + 2.2 * error + np.array([0.1, 0.2, 0.3]) - np.array([0.3, -0.1, 0.2])
+    np.testing.assert_allclose(force, MASS * (wanted + [0.0, 0.0, GRAVITY]), rtol=1e-12)
+    # i grows by k_i times the error of the velocity in a period of 5 ms.
+    np.testing.assert_allclose(new, np.array([0.1, 0.2, 0.3]) + 0.005 * error, rtol=1e-12)
+
+
+@pytest.mark.parametrize("direction", [(1.0, 0.0, 0.0), (-0.6, 0.0, 0.8), (2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0)])
+def test_speed_that_is_asked_for_has_its_limit_and_the_way_its_direction(direction):
+    """Beyond 1.25 m the speed is no longer in proportion to the way: it stays 1 m/s, straight ahead."""
+    for far, speed in ((1.0, 0.8), (1.2, 0.96), (1.3, 1.0), (50.0, 1.0)):
+        _, new = kept_at(-far * np.array(direction), k_velocity=0.1)
+        np.testing.assert_allclose(new / 0.005, speed * np.array(direction), rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("force", "tilt", "lift"),
+    [((0.0, 0.0, -50.0), 0.0, 1.4), ((0.0, 0.0, 50.0), 0.0, 7.0 * np.cos(0.61)), ((30.0, -40.0, 0.0), 0.61, None)],
+)
+def test_force_is_cut_to_what_lift_and_tilt_allow(force, tilt, lift):
+    """Sideways the direction stays: 3 to −4; upwards there is always room for the whole tilt."""
+    found, _ = kept_at(a_d=force)
+    assert np.arctan2(np.hypot(*found[:2]), found[2]) == pytest.approx(tilt, abs=1e-9)
+    assert found[2] == pytest.approx(MASS * GRAVITY if lift is None else lift)
+    if tilt:
+        assert found[1] / found[0] == pytest.approx(-4.0 / 3.0)
+        assert found[0] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("push", "error", "grows"), [(30.0, 0.5, False), (30.0, -0.5, True), (-30.0, -0.5, False), (1.0, 0.5, True)]
+)
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_integral_stops_where_the_force_is_at_its_limit_and_the_error_drives_it_on(push, error, grows, axis):
+    """Upwards as well as downwards and sideways; where the error turns it back it goes on at once."""
+    way = np.eye(3)[axis]
+    _, new = kept_at(v=-error * way, a_d=push * way, k_velocity=1e-9)
+    np.testing.assert_allclose(new, 0.005 * error * way * grows, atol=1e-12)
+
+
+def test_vertical_limit_does_not_stop_the_horizontal_integral_nor_the_other_way_round():
+    _, up = kept_at(v=(-0.1, -0.2, -0.3), a_d=(0.0, 0.0, 50.0), k_velocity=1e-9)
+    np.testing.assert_allclose(up, [0.0005, 0.001, 0.0], atol=1e-12)
+    _, aside = kept_at(v=(-0.1, -0.2, -0.3), a_d=(50.0, 50.0, 0.0), k_velocity=1e-9)
+    np.testing.assert_allclose(aside, [0.0, 0.0, 0.0015], atol=1e-12)
+
+
+def test_integral_has_its_limits_horizontally_by_its_length_and_vertically_on_both_sides():
+    _, new = kept_at(integral=(6.0, -8.0, 9.0))
+    np.testing.assert_allclose(new, [3.0, -4.0, 5.0])
+    _, new = kept_at(integral=(0.3, -0.4, -9.0))
+    np.testing.assert_allclose(new, [0.3, -0.4, -5.0])
+
+
+@pytest.mark.parametrize(("tilt", "factor"), [(0.3, np.cos(0.3)), (0.9, np.cos(0.61)), (-0.3, np.cos(0.3))])
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_tilted_uav_is_given_the_thrust_that_keeps_its_lift_up_to_the_largest_tilt(tilt, factor, axis):
+    q = Rotation.from_euler(axis, tilt).as_quat(scalar_first=True)
+    force, _ = kept_at(q=q)
+    assert force[2] == pytest.approx(min(MASS * GRAVITY / factor, 7.0))

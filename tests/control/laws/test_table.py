@@ -8,8 +8,10 @@ from armland.control.laws.backstepping import paper_law
 from armland.control.laws.exact import Reference, exact_law, exact_lyapunov
 from armland.control.laws.rigid_body import BacksteppingGains
 from armland.control.laws.settings import row_of
+from armland.control.laws.table import ACCELERATIONS, end_effector_acceleration, kept_layout, told_layout
 from armland.errors import ConfigurationError
 from armland.models.environment import on_land
+from armland.records import layout as record_layout
 
 STIFFNESS, DAMPING = 935.0, 44.4
 QUAT = Rotation.from_rotvec([0.05, -0.03, 0.02]).as_quat(scalar_first=True)
@@ -121,6 +123,24 @@ def test_x4_limited_thrust_and_torque_are_made_up_for_by_the_arm(bench):
     assert np.linalg.norm(small.force - free.force - (7.2 - small.thrust) * lift) == pytest.approx(0.2)
 
 
+def test_x4_rotors_and_arm_together_turn_the_body_as_was_asked(bench):
+    """About roll and pitch: what the four rotors then give, and the arm's push at its lever. The wrong way round it would be less."""
+    R, asked = Rotation.from_quat(QUAT, scalar_first=True), np.array([0.5, -0.4, 0.0])
+    changes = {"takeover_limit": 100.0}
+    free = bench.run(tau_att=asked, quat=QUAT, thrust=7.2, changes=changes)
+    found = bench.run(tau_att=asked, quat=QUAT, thrust=7.2, limits=True, changes=changes)
+    push = R.inv().apply(found.force - free.force - (7.2 - found.thrust) * R.apply([0.0, 0.0, 1.0]))
+    # The paper's rotors, 127 mm off both axes: on the lifted side all of 1.86 N, on the other the least.
+    given = asked - np.cross(LEVER, push)
+    rotor = 0.25 * (found.thrust + np.array([[1, -1], [1, 1], [-1, 1], [-1, -1]]) @ given[:2] / 0.127)
+    assert (rotor > 0.09 - 1e-6).all()
+    assert (rotor < 1.86 + 1e-6).all()
+    assert rotor.max() == pytest.approx(1.86, abs=1e-6)
+    # Of a roll and pitch that is beyond them the rotors keep the direction.
+    assert given[1] / given[0] == pytest.approx(-0.8, rel=1e-6)
+    assert np.cross(LEVER, push)[0] > 0.1
+
+
 def test_x5_on_a_deck_that_accelerates_the_arm_carries_more(bench):
     deck = on_land()
     deck["base_a"] = [0.4, -0.2, 0.6]
@@ -170,3 +190,11 @@ def test_a_users_law_flies_like_a_row_and_gives_way_to_exact_where_it_fails(benc
 def test_row_that_is_none_is_refused_with_those_that_are():
     with pytest.raises(ConfigurationError, match=r"law 'pid': there is classical, paper, exact, or a law of one's own"):
         row_of("pid")
+
+
+@pytest.mark.parametrize(("switch", "fed"), [("none", (0, 0, 0)), ("reference", (1, 2, 3)), ("implied", (4, 5, 6))])
+def test_arm_is_fed_forward_nothing_the_reference_or_what_the_law_implied(switch, fed):
+    """Each whatever the other is, and never a turn."""
+    r, p, s = (np.zeros(1, layout) for layout in (record_layout("reference", 7), told_layout(), kept_layout()))
+    r["a"], s["implied"], p["acceleration"] = [1.0, 2.0, 3.0], [4.0, 5.0, 6.0], ACCELERATIONS.index(switch)
+    np.testing.assert_array_equal(end_effector_acceleration(r[0], p[0], s[0]), [*fed, 0.0, 0.0, 0.0])

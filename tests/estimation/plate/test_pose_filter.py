@@ -467,3 +467,150 @@ def test_p1_is_thrust_along_the_tilted_body_and_apparent_gravity():
     advance(m[0], 5.0, STILL, tuple(gamma), STILL, m["uav_quat"][0].copy(), p[0], s[0])
     lift = 5.0 / MASS * np.array([0.0, np.sin(0.2), np.cos(0.2)])
     np.testing.assert_allclose(s["track"]["acceleration"][0, 0], lift + gamma, atol=1e-12)
+
+
+def predicted(flown, horizon, memory=None, **changes):
+    """The plate `horizon` s ahead of the flight's end, with some of what the filter is told changed."""
+    p, o = flown.parameters.copy(), np.zeros(1, plate_layout())
+    for name, value in changes.items():
+        p[name] = value
+    predict(horizon, p[0], (flown.memory if memory is None else memory)[0], o[0])
+    return o[0]
+
+
+@pytest.fixture
+def turning(flown):
+    """Memory of the flight's end with rates of 2 rad/s aslant, and all of the alignment known."""
+    memory = flown.memory.copy()
+    memory["rate"], memory["align"]["P"] = [0.9, -1.2, 1.4], 0.0
+    return memory
+
+
+@pytest.mark.parametrize("ahead", [0.01, 0.02])
+def test_p3_predicted_velocity_is_the_rate_of_the_predicted_position(flown, turning, ahead):
+    """By differences over the horizon, of a plate that swings about a centre of mass that accelerates."""
+    h = 1e-5
+    before, after = (predicted(flown, ahead + x, turning) for x in (-h, h))
+    here = predicted(flown, ahead, turning)
+    np.testing.assert_allclose((after["position"] - before["position"]) / (2.0 * h), here["velocity"], atol=1e-7)
+    turn = Rotation.from_quat(before["quat"], scalar_first=True).inv() * Rotation.from_quat(
+        after["quat"], scalar_first=True
+    )
+    np.testing.assert_allclose(turn.as_rotvec() / (2.0 * h), turning["rate"][0], atol=1e-6)
+    # The acceleration is held: of the centre of mass the velocity grows by it.
+    lever = [
+        Rotation.from_quat(x["quat"], scalar_first=True).apply(np.cross(turning["rate"][0], PLATE_OFFSET))
+        for x in (before, after)
+    ]
+    gained = (after["velocity"] - lever[1] - before["velocity"] + lever[0]) / (2.0 * h)
+    np.testing.assert_allclose(gained, here["acceleration"], atol=1e-6)
+
+
+def test_attitude_is_predicted_for_no_longer_than_its_rates_hold(flown, turning):
+    """From the tick at which the rates were taken: what is ahead of that is where they have turned it by then."""
+    age = int(turning["track"]["tick"][0] - turning["imu_tick"][0])
+    left = (int(flown.parameters["hold"][0]) - age) * H
+    assert 0.0 < left < 1.0
+    at_the_end, later = (predicted(flown, left + x, turning)["quat"] for x in (0.0, 0.3))
+    np.testing.assert_allclose(later, at_the_end, atol=1e-12)
+    now = Rotation.from_quat(predicted(flown, 0.0, turning)["quat"], scalar_first=True)
+    turned = now.inv() * Rotation.from_quat(later, scalar_first=True)
+    np.testing.assert_allclose(turned.as_rotvec(), left * turning["rate"][0], atol=1e-9)
+
+
+def test_errors_of_attitude_and_rate_are_the_plates_by_their_levers(flown, turning):
+    """A small turn θ about the marker moves the plate by θ × arm; an error of the rates its velocity by δω × ρ."""
+    R = Rotation.from_quat(predicted(flown, 0.0, turning)["quat"], scalar_first=True)
+    arm, lever = R.apply(PLATE_OFFSET - MARKER), R.apply(PLATE_OFFSET)
+    sure, unsure = (predicted(flown, 0.0, turning, sigma_attitude=s, sigma_rate=0.0) for s in (0.0, 0.1))
+    grown = unsure["sigma_position"] ** 2 - sure["sigma_position"] ** 2
+    np.testing.assert_allclose(grown, 0.1**2 * (arm @ arm - arm**2), rtol=1e-6)
+    np.testing.assert_allclose(unsure["sigma_attitude"], 0.1, rtol=1e-5)
+    np.testing.assert_allclose(unsure["sigma_velocity"], sure["sigma_velocity"])
+    shaken = predicted(flown, 0.0, turning, sigma_attitude=0.0, sigma_rate=0.5)
+    grown = shaken["sigma_velocity"] ** 2 - sure["sigma_velocity"] ** 2
+    np.testing.assert_allclose(grown, 0.5**2 * (lever @ lever - lever**2), rtol=1e-6)
+
+
+def test_alignment_drifts_on_while_no_image_comes_and_over_the_horizon(flown, turning):
+    """A random walk: its variance grows by walk² a second since the last image, and as much ahead."""
+    turning["align"]["tick"] = turning["track"]["tick"] - 500
+    found = [predicted(flown, ahead, turning, sigma_attitude=0.0, align_walk=0.02) for ahead in (0.0, 0.25)]
+    np.testing.assert_allclose(found[0]["sigma_attitude"], 0.02 * np.sqrt(0.5))
+    np.testing.assert_allclose(found[1]["sigma_attitude"], 0.02 * np.sqrt(0.75))
+
+
+def test_nothing_is_vouched_for_that_is_less_sharp_than_it_must_be(flown):
+    """Each bound on its own, at what the worst axis has."""
+    here = predicted(flown, 0.0)
+    assert here["valid"] == 1
+    for bound, field in (("sigma_position_max", "sigma_position"), ("sigma_velocity_max", "sigma_velocity")):
+        worst = here[field].max()
+        assert predicted(flown, 0.0, **{bound: 1.01 * worst})["valid"] == 1
+        assert predicted(flown, 0.0, **{bound: 0.99 * worst})["valid"] == 0
+
+
+@pytest.mark.parametrize("clock", ["sample_tick", "imu_tick"])
+def test_nothing_is_vouched_for_that_is_older_than_it_may_be(flown, clock):
+    most = int(flown.parameters["age_max"][0])
+    for age, valid in ((most, 1), (most + 1, 0)):
+        memory = flown.memory.copy()
+        memory[clock] = memory["track"]["tick"] - age
+        found = predicted(flown, 0.0, memory, sigma_position_max=np.inf, sigma_velocity_max=np.inf)
+        assert found["valid"] == valid
+    if clock == "sample_tick":
+        assert found["age"] == pytest.approx((most + 1) * H)
+
+
+def test_first_sample_knows_the_place_and_hardly_the_motion():
+    """Position by the camera alone, speed and bias by their priors, heading by image and gyros together."""
+    p, s, level, o = (
+        settings(sigma_rate=0.0),
+        np.zeros(1, kept_layout()),
+        np.array([1.0, 0.0, 0.0, 0.0]),
+        np.zeros(1, plate_layout()),
+    )
+    tick(0, 0, level, STILL, MASS * GRAVITY, STILL, level, p, s)
+    sample = np.zeros(1, MESSAGE)
+    sample["camera_position"], sample["camera_quat"], sample["camera_sigma"] = [0.1, 0.2, 0.5], quats(FACE), SIGMA
+    assert fuse(sample[0], p[0], s[0]) == STARTED
+    x, P = present(p[0], s[0])
+    np.testing.assert_allclose(x, [*(np.array([0.1, 0.2, 0.5]) - MARKER), *np.zeros(6)], atol=1e-12)
+    np.testing.assert_allclose(np.diag(P)[3:6], p["speed_prior"][0] ** 2)
+    np.testing.assert_allclose(np.diag(P)[6:], p["bias_prior"][0] ** 2)
+    heading = np.hypot(SIGMA[5], p["sigma_attitude"][0])
+    np.testing.assert_allclose(np.sqrt(np.diag(s["align"]["P"][0])), [p["tilt_prior"][0], p["tilt_prior"][0], heading])
+    # An error of the attitude shows in the centre of mass by the marker's lever.
+    by_attitude = np.diag(s["align"]["P"][0]) + p["sigma_attitude"][0] ** 2
+    turned = np.array([np.cross(e, MARKER) for e in np.eye(3)])
+    np.testing.assert_allclose(np.diag(P)[:3], SIGMA[:3] ** 2 + by_attitude @ turned**2, rtol=1e-9)
+    predict(0.0, p[0], s[0], o[0])
+    np.testing.assert_allclose(o["sigma_velocity"][0], p["speed_prior"][0])
+
+
+@pytest.mark.parametrize(("age", "carried"), [(0, 0.0), (20, 0.02), (5000, None)])
+def test_first_attitude_that_is_old_is_carried_on_with_its_rates(age, carried):
+    """To the first tick, and for no longer than rates hold."""
+    p, s, rate = settings(), np.zeros(1, kept_layout()), np.array([0.5, -1.0, 2.0])
+    reported = Rotation.from_rotvec([0.1, 0.2, -0.3])
+    tick(6000, 6000 - age, quats(reported), rate, MASS * GRAVITY, STILL, np.array([1.0, 0.0, 0.0, 0.0]), p, s)
+    carried = p["hold"][0] * H if carried is None else carried
+    found = Rotation.from_quat(s["quat"][0, 6000 % RING], scalar_first=True)
+    np.testing.assert_allclose((reported.inv() * found).as_rotvec(), carried * rate, atol=1e-9)
+
+
+def test_attitude_between_samples_turns_on_with_the_rates_until_they_are_too_old():
+    p, s, level, rate = (
+        settings(hold=30),
+        np.zeros(1, kept_layout()),
+        np.array([1.0, 0.0, 0.0, 0.0]),
+        np.array([0.5, -1.0, 2.0]),
+    )
+    for k in range(100, 160):
+        tick(k, 100, level, rate, MASS * GRAVITY, STILL, level, p, s)
+        turned = Rotation.from_quat(s["quat"][0, k], scalar_first=True).as_rotvec()
+        np.testing.assert_allclose(turned, min(k - 100, 30) * H * rate, atol=1e-9)
+    # Ticks beyond that count as guessed.
+    blind = s["track"]["blind"][0]
+    assert blind[130] == 0
+    assert blind[159] == 29

@@ -3,8 +3,9 @@
 import mujoco
 import numpy as np
 
-from armland.experiments.envelope.sight import by_distance, glances, put
+from armland.experiments.envelope.sight import by_distance, glances, hinge_angles, put
 from armland.plant.scene.composition import build_scene
+from armland.rotations import from_rotation_vector, matrix
 
 
 def test_scene_is_put_where_the_record_has_it(landed, landing_scenario):
@@ -32,3 +33,9 @@ def test_nearer_skids_hide_a_part_of_it(landed, landing_scenario):
     worst = min(seen, key=lambda g: g.sight.seen)
     assert worst.sight.seen < 0.95
     assert any("skid_1" in name for name in worst.sight.hidden_by)
+
+
+def test_hinge_angles_are_those_of_the_rotations_in_turn():
+    y, x, z = 0.3, -0.2, 0.7
+    turns = [matrix(from_rotation_vector(a * np.eye(3)[i])) for a, i in ((y, 1), (x, 0), (z, 2))]
+    np.testing.assert_allclose(hinge_angles(turns[0] @ turns[1] @ turns[2]), [y, x, z], atol=1e-12)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from armland.experiments.judge.figures import MEASURES, capture, release, rest, steady, touchdown
+from armland.experiments.episode import prepare
+from armland.experiments.judge.figures import MEASURES, bounds, capture, release, rest, steady, touchdown
 from armland.rotations import from_rotation_vector
 
 
@@ -52,3 +53,21 @@ def test_what_never_came_has_no_figures(ticks, brief):
         assert set(measure(none, brief).values()) == {None}
     assert rest(ticks, brief) == {"speed_mps": 0.0, "touching": 0.0}
     assert set(MEASURES) == {"capture", "touchdown", "rest", "release", "steady", "tracking"}
+
+
+def test_bounds_are_the_missions_criteria_and_the_limits_that_there_are(brief):
+    assert bounds(brief) == {
+        "touchdown.speed_mps": 0.15,
+        "touchdown.offset_m": 0.01,
+        "rest.speed_mps": 0.01,
+        "hinge_force_max_n": 106.2,
+        "joint_torque_max_ratio": 1.0,
+    }
+    assert bounds(brief._replace(criteria=(), limits={})) == {}
+
+
+def test_bounds_of_a_landing_are_its_criteria(landing_scenario):
+    found = bounds(prepare(landing_scenario, "landing").brief)
+    assert found["touchdown.speed_mps"] == 0.15
+    assert found["hinge_force_max_n"] == pytest.approx(0.6 * 177.0)
+    assert all(np.isfinite(v) for v in found.values())

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from armland.experiments.judge.judgement import judge
+from armland.experiments.judge.judgement import end_of, judge, last_flown, limits_violated, phase_times
 from armland.mission.supervisor.remedies import REMEDIES
 
 
@@ -92,3 +92,47 @@ def test_result_is_plain_data(ticks, brief):
 def test_messages_of_a_log_are_judged_like_ticks(ticks, brief):
     messages = {name: np.array(ticks[name]) for name in ticks.dtype.names}
     assert judge(messages, brief) == judge(ticks, brief)
+
+
+@pytest.mark.parametrize(
+    ("message", "field", "index", "value", "name"),
+    [
+        ("measurement", "q", (50, 2), 2.1, "joint_position"),
+        ("measurement", "q", (50, 2), -2.1, "joint_position"),
+        ("measurement", "qd", (50, 2), -2.0, "joint_speed"),
+        ("truth", "tau", (slice(None), 3), -100.1, "joint_torque"),
+        ("truth", "tau", (50, 3), 1.6, "torque_rate"),
+        ("health", "sigma_min", 50, 0.02, "singularity"),
+        ("truth", "hinge_force", (50, 0), 110.0, "hinge_force"),
+        ("truth", "foul", (50, 0), 0.1, "arm_touched_cradle"),
+        ("truth", "foul", (50, 1), 0.1, "arm_touched_floor"),
+        ("truth", "foul", (50, 2), 0.1, "arm_touched_uav"),
+    ],
+)
+def test_each_limit_is_found(ticks, brief, message, field, index, value, name):
+    assert limits_violated(ticks, brief) == []
+    ticks[message][field][index] = value
+    assert limits_violated(ticks, brief) == [name]
+    judged = name.startswith("arm_touched")
+    assert limits_violated(ticks, brief._replace(limits={})) == ([name] if judged else [])
+
+
+def test_the_torque_that_appears_in_the_first_tick_is_no_jump(ticks, brief):
+    ticks["truth"]["tau"][2:, 1] = 40.0
+    assert limits_violated(ticks, brief) == []
+
+
+def test_phases_join_without_gaps(ticks, brief):
+    times = phase_times(ticks["mission"]["phase"], brief.phases, brief.rate_hz)
+    assert [(p.name, p.start_s, p.end_s) for p in times[:2]] == [("guide", 0.0, 1.0), ("close", 1.0, 1.5)]
+    assert times[-1].end_s == len(ticks) / brief.rate_hz
+
+
+def test_an_end_that_another_follows_is_no_phase_of_the_mission(ticks, brief):
+    assert (end_of(ticks, brief), last_flown(ticks, brief)) == ("done", "release")
+    ticks["mission"]["phase"][1500:2500] = brief.phases.index("abort")
+    assert last_flown(ticks, brief) == "close"
+
+
+def test_a_mission_that_has_not_ended_was_last_in_its_phase(ticks, brief):
+    assert last_flown(ticks[:1800], brief) == "carry"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from armland.experiments.episode import fly, fly_prepared, prepare
-from armland.experiments.takeoff_weight.study import FLOWN, flown_limit, study
+from armland.experiments.takeoff_weight.study import FLOWN, bisected, flies_off, flown_limit, loaded, study
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,25 @@ def test_flights_find_theirs_near_theory(landing_scenario):
     for _, direction, speed in FLOWN[:3]:
         velocity = (speed, 0.0, 0.0) if direction == "forward" else (0.0, -speed, 0.0)
         about = 1.0 if speed == 0.0 else 1.0016 * (speed / 0.6) ** 2 + 1.0 - (speed / 0.6) ** 2
-        flown, half, inside = flown_limit(landing_scenario, velocity, about, lambda: None)
+        flown, half, inside = flown_limit(landing_scenario, velocity, about, lambda _: None)
         assert inside
         assert abs(flown - about) < 1e-3
         assert half < 3e-4
+
+
+STATIC, EMPTY = 4.0 * 1.86, 0.5277 * 9.81
+
+
+def test_a_uav_too_heavy_at_rest_flies_with_the_arms_speed_and_sinks_without(landing_scenario):
+    weight = 1.0008 * STATIC
+    assert flies_off(loaded(landing_scenario, (0.0, -0.6, 0.0), weight, EMPTY))
+    assert not flies_off(loaded(landing_scenario, (0.0, 0.0, 0.0), weight, EMPTY))
+
+
+def test_bisection_finds_the_limit_and_says_whether_it_saw_both_sides():
+    tried = []
+    found, half, inside = bisected(lambda share: share < 1.0021, 1.0, tried.append)
+    assert abs(found - 1.0021) <= half < 3e-4
+    assert inside
+    assert tried == [1, 2, 3, 4, 5]
+    assert bisected(lambda _: True, 1.0, lambda _: None)[2] is False

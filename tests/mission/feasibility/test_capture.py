@@ -5,6 +5,7 @@ import pytest
 from armland.errors import ConfigurationError
 from armland.mission.belief import flyer
 from armland.mission.feasibility.capture import check_capture, grip_of
+from armland.models.capture import GATE_M, lateral_speed_bound
 from armland.scenario import load_scenario
 
 
@@ -40,3 +41,18 @@ def test_closing_by_a_longer_gap_leaves_less_lateral_speed():
         return float(str(refusal.value).rpartition("below ")[2].split(" m/s")[0])
 
     assert bound(0.03) != bound(0.15)
+
+
+def test_lateral_speed_is_bounded_at_the_fastest_that_the_move_can_close():
+    """Standoff and what lies beyond, 36 mm in a second, at 35/16 of the mean; the plate may come as fast as it drifts."""
+    scenario = load_scenario("landing", {"bounds": {"align_speed_mps": 0.5}})
+    mass = flyer(scenario).mass
+    most = lateral_speed_bound(grip_of(scenario), mass, 35.0 / 16.0 * 0.036 + 0.5, GATE_M)
+    with pytest.raises(ConfigurationError, match=rf"it must be below {most:.3f} m/s"):
+        check_capture(scenario, mass)
+
+
+def test_tilt_that_is_aligned_to_must_be_below_the_one_that_is_given_up_at():
+    checked({"bounds": {"align_tilt_deg": 29.9}})
+    with pytest.raises(ConfigurationError, match="30"):
+        checked({"bounds": {"align_tilt_deg": 30.0}})

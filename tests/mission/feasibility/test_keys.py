@@ -37,7 +37,13 @@ def test_belief_is_used_where_its_subject_is():
 @pytest.mark.parametrize("name", MISSIONS)
 def test_scenarios_that_come_with_armland_are_used_in_all_they_say(name):
     for file in ("paper", "compare") if MISSIONS[name].start == "hinged" else ("landing",):
-        check_keys(load_scenario(file).own, MISSIONS[name])
+        own = load_scenario(file).own
+        assert own
+        # One key more, and that one alone is refused.
+        with pytest.raises(ConfigurationError) as refusal:
+            check_keys(own | {"wings.span_m"}, MISSIONS[name])
+        refused = str(refusal.value).splitlines()[1:]
+        assert [line.partition(":")[0].strip() for line in refused] == ["wings.span_m"]
 
 
 def test_prefix_of_a_key_is_a_whole_table_and_no_part_of_a_word():

@@ -5,7 +5,7 @@ import pytest
 
 from armland.mission.reference.balance import BALANCED, GIVEN_UP, SETTLED, begin_balance, refer_balance
 from armland.mission.reference.moves import BALANCE, move
-from armland.rotations import from_rotation_vector
+from armland.rotations import from_rotation_vector, matrix
 
 DT = 1e-3
 
@@ -105,3 +105,95 @@ def test_uav_that_cannot_be_balanced_is_given_up_and_the_arm_comes_to_rest(bench
     pendulum.run(0.5)
     assert pendulum.kept["balance"]["state"][0] == GIVEN_UP
     assert np.abs(pendulum.kept["balance"]["sway_v"]).max() < 1e-3
+
+
+def run_steadily(bench, speed, gains=None, tilt=0.0, ticks=41):
+    """References (ticks, 9) of a pivot that starts at `speed` (2,), m/s: with gains (4,), and a tilt that stays as it is."""
+    told, kept, e, r = bench.told["refer"], bench.kept["refer"], bench.e, bench.tick.reference
+    e["r"], e["v"], kept["v0"] = [0.6, 0.0, 0.9], [*speed, 0.0], 0.0
+    kept["r0"], told["coast"] = e["r"], 1e9
+    e["quat"][0] = from_rotation_vector(np.array([0.0, tilt, 0.0]))
+    told["balance"]["gains"] = 0.0 if gains is None else gains
+    begin_balance(e[0], told["balance"][0], kept["balance"][0])
+    rows = []
+    for k in range(ticks):
+        e["tick"] = 1000 + k
+        move(BALANCE, k * DT, 0.0, 0, e[0], told[0], kept[0], r[0])
+        refer_balance(k * DT, 0, e[0], told[0], kept[0], r[0])
+        rows.append(np.concatenate([r["r"][0], r["v"][0], r["a"][0]]))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.04])
+def test_pivot_moves_by_its_own_velocity_and_acceleration_on_the_wrists_circle(bench, tilt):
+    """Steady, and pushed by 20 m/s² per unit of tilt: all three axes are rates of what comes before."""
+    rows = run_steadily(bench, (0.3, -0.2), (0.0, 0.0, 20.0, 0.0), tilt)
+    np.testing.assert_allclose((rows[2:, :3] - rows[:-2, :3]) / (2.0 * DT), rows[1:-1, 3:6], atol=2e-5)
+    # The acceleration of a row is that of the tick which ends there.
+    middle = 0.5 * (rows[1:-1, 6:] + rows[2:, 6:])
+    np.testing.assert_allclose((rows[2:, 3:6] - rows[:-2, 3:6]) / (2.0 * DT), middle, atol=5e-3)
+    assert rows[-1, 6] == pytest.approx(20.0 * np.sin(tilt), rel=1e-6)
+    assert rows[-1, 2] < 0.9
+    assert rows[-1, 8] < -0.05
+
+
+def test_balancing_begins_at_the_pivots_own_speed_and_upright(bench):
+    bench.kept["refer"]["balance"]["lean"] = bench.kept["refer"]["balance"]["sway"] = 0.5
+    rows = run_steadily(bench, (0.2, -0.1), ticks=1)
+    np.testing.assert_allclose(rows[0, 3:5], [0.2, -0.1], atol=1e-9)
+    np.testing.assert_allclose(rows[0, :2], [0.6 + 0.2 * DT, -0.1 * DT], atol=1e-9)
+    # What the pivot did before is not taken for a push since.
+    np.testing.assert_array_equal(bench.kept["refer"]["balance"]["sway_log"][0, :, 0], 0.2)
+    np.testing.assert_array_equal(bench.kept["refer"]["balance"]["sway_log"][0, :, 1], -0.1)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_tool_leans_towards_where_the_pivot_goes(bench, axis):
+    """Of the pivot's way the wrist makes its share: the tool's tip is at wrist × lean across its foot."""
+    speed = np.zeros(2)
+    speed[axis] = 0.3
+    rows = run_steadily(bench, speed)
+    b, p = bench.kept["refer"]["balance"], bench.told["refer"]["balance"][0]
+    up = from_rotation_vector(b["lean"][0].copy())
+    tip = p["wrist"] * matrix(up)[:2, 2]
+    np.testing.assert_allclose(tip, p["swing"] * (rows[-1, :2] - [0.6, 0.0]), rtol=1e-3, atol=1e-9)
+    turned = np.cross(b["lean_v"][0], [0.0, 0.0, p["wrist"]])
+    np.testing.assert_allclose(turned[:2], p["swing"] * rows[-1, 3:5], rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize(("age", "balanced"), [(50, True), (51, False)])
+def test_attitude_that_is_too_old_brings_the_pivot_to_rest(bench, age, balanced):
+    told, kept = bench.told["refer"], bench.kept["refer"]
+    assert told["balance"]["attitude_age"][0] == 50
+    bench.e["quat"][0] = from_rotation_vector(np.array([0.0, 0.03, 0.0]))
+    bench.e["v"], bench.e["r"] = [0.1, 0.0, 0.0], [0.6, 0.0, 0.9]
+    begin_balance(bench.e[0], told["balance"][0], kept["balance"][0])
+    refer_balance(0.0, age, bench.e[0], told[0], kept[0], bench.tick.reference[0])
+    slowing = -0.1 / told["coast"][0]
+    assert (kept["balance"]["sway_a"][0, 0] == pytest.approx(slowing)) != balanced
+    # At rest nothing is to be brought to rest.
+    assert (kept["balance"]["sway_a"][0, 1] == 0.0) or balanced
+
+
+@pytest.mark.parametrize(("rise", "height"), [(0.0, 0.02), (0.1, 0.02), (0.0, -0.02)])
+def test_setting_down_is_smooth_and_ends_below_the_rails_with_its_mean_speed(bench, rise, height):
+    """From a pivot that still rises: what it coasts on is part of the way. Down at 0.04 m/s on average."""
+    down, told = bench.told["refer"]["balance"]["down"][0], bench.told["refer"]
+    pendulum = Pendulum(bench, [0.0, 0.0], 0, height=down + height)
+    pendulum.kept["v0"][0, 2] = rise
+    way = abs(height + 0.0005 + rise * told["coast"][0])
+    rows = []
+    for k in range(round(1000 * way / 0.04) + 300):
+        move(BALANCE, k * DT, 0.0, 0, bench.e[0], told[0], pendulum.kept[0], pendulum.r[0])
+        refer_balance(k * DT, 0, bench.e[0], told[0], pendulum.kept[0], pendulum.r[0])
+        rows.append([pendulum.r["r"][0, 2], pendulum.r["v"][0, 2]])
+    rows = np.array(rows)
+    np.testing.assert_allclose((rows[2:, 0] - rows[:-2, 0]) / (2.0 * DT), rows[1:-1, 1], atol=1e-3)
+    assert rows[0, 0] == pytest.approx(down + height)
+    assert rows[-1, 0] == pytest.approx(down - 0.0005, abs=1e-5)
+    # Half of its time after the begin it is half-way.
+    half = round(500 * way / 0.04)
+    coasted = rise * told["coast"][0] * (1.0 - np.exp(-half * DT / told["coast"][0]))
+    assert rows[half, 0] == pytest.approx(
+        down + height + coasted + 0.5 * (-height - 0.0005 - rise * told["coast"][0]), abs=1e-4
+    )

@@ -24,10 +24,11 @@ def made():
 
 
 def at(made, mode, t, duration=1.5):
-    """Position, velocity, acceleration and progress `t` s into a phase; the plate moves on at its own speed."""
+    """Position, velocity, acceleration and progress `t` s into a phase; the plate moves on by its own speed and acceleration."""
     p, s, e, r = made
     s, r = s.copy(), r.copy()
-    s["p"] += (t - 0.7) * s["pv"]
+    s["p"] += (t - 0.7) * s["pv"] + 0.5 * (t - 0.7) ** 2 * s["pa"]
+    s["pv"] += (t - 0.7) * s["pa"]
     progress = move(mode, t, duration, 1, e[0], p[0], s[0], r[0])
     return r["r"][0], r["v"][0], r["a"][0], progress
 
@@ -39,6 +40,13 @@ def test_velocity_and_acceleration_are_the_rates_of_what_comes_before(made, mode
         ahead, here, behind = at(made, mode, t + h), at(made, mode, t), at(made, mode, t - h)
         np.testing.assert_allclose((ahead[0] - behind[0]) / (2.0 * h), here[1], atol=1e-5)
         np.testing.assert_allclose((ahead[1] - behind[1]) / (2.0 * h), here[2], atol=1e-4)
+
+
+@pytest.mark.parametrize("mode", [JOIN, TRACK, CLOSE])
+def test_acceleration_of_the_plate_is_the_arms_as_well(made, mode):
+    made[1]["pa"] = [0.3, -0.2, 0.4]
+    test_velocity_and_acceleration_are_the_rates_of_what_comes_before(made, mode)
+    np.testing.assert_allclose(at(made, mode, 1.6)[2], [0.3, -0.2, 0.4], atol=1e-12)
 
 
 @pytest.mark.parametrize("mode", [JOIN, CLOSE, MOVE, BACK_OFF, LAUNCH, LEAVE])
@@ -73,6 +81,37 @@ def test_move_ends_at_its_target(made):
     assert progress == 1.0
 
 
+@pytest.mark.parametrize(("t", "duration", "progress"), [(0.375, 1.5, 0.25), (3.0, 1.5, 1.0), (0.1, 0.0, 1.0)])
+def test_progress_is_the_share_of_the_moves_time_that_has_gone_by(made, t, duration, progress):
+    assert at(made, MOVE, t, duration)[3] == pytest.approx(progress)
+
+
+def test_run_up_ends_at_the_speed_that_the_uav_is_given_whatever_it_began_with(made):
+    p, s, _, _ = made
+    r, v, a, _ = at(made, LAUNCH, 1.0)
+    np.testing.assert_allclose(v, [0.5, -0.2, 0.1], atol=1e-12)
+    np.testing.assert_allclose(a, 0.0, atol=1e-12)
+    # Of the run-up's 0.6 s the change of speed counts half.
+    np.testing.assert_allclose(r - s["r0"][0], s["v0"][0] + (p["launch"][0] - s["v0"][0]) * 0.7, atol=1e-12)
+
+
+def test_arm_that_leaves_sinks_by_the_depth_and_comes_to_rest(made):
+    _, s, _, _ = made
+    r, v, _, _ = at(made, LEAVE, 3.0)
+    np.testing.assert_allclose(v, 0.0, atol=1e-12)
+    # On at its speed for half of the way down, then half a run-up more.
+    wanted = s["v0"][0] * (0.5 * 0.35 + 0.5 * 0.6) - [0.0, 0.0, 0.06]
+    np.testing.assert_allclose(r - s["r0"][0], wanted, atol=1e-12)
+
+
+@pytest.mark.parametrize("mode", [HOLD, MOVE, BACK_OFF])
+def test_only_an_arm_that_yields_follows_the_hinges_force(made, mode):
+    calm = at(made, mode, 0.5)
+    made[2]["hinge_force"] = [5.0, -4.0, 3.0]
+    np.testing.assert_array_equal(at(made, mode, 0.5)[0], calm[0])
+    assert not np.array_equal(at(made, YIELD, 0.5)[0], calm[0])
+
+
 def test_joining_ends_on_the_plates_motion_below_it(made):
     s = made[1]
     r, v, _, _ = at(made, JOIN, 1.5)
@@ -99,7 +138,7 @@ def test_arm_gives_way_to_where_the_hinge_pushes_and_no_further_than_its_bound(m
         move(YIELD, 0.1, 0.0, 1, e[0], p[0], s[0], r[0])
     # The force of the end effector on the UAV is opposite to what pushes the arm.
     np.testing.assert_allclose(s["yielded"][0], [-100 * 1e-3 * 3e-3 * 2.0, 0.0, 100 * 1e-3 * 3e-3], rtol=1e-9)
-    for _ in range(5000):
+    for _ in range(1500):
         move(YIELD, 0.1, 0.0, 1, e[0], p[0], s[0], r[0])
     np.testing.assert_allclose(r["r"][0] - s["r0"][0], [-4e-3, 0.0, 4e-3], rtol=1e-9)
 

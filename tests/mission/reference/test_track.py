@@ -61,3 +61,20 @@ def test_acceleration_is_fed_forward_and_limited(made):
     e["plate_a"][0] = [1.0, 10.0, -10.0]
     run(made, 1)
     np.testing.assert_allclose(s["pa"][0], [1.0, 3.0, -3.0])
+
+
+def test_one_tick_by_hand(made):
+    """a = a_p + 2·12 (v_p − v) + 144 (p_p − p) while somebody vouches for the plate, and −2·12 v while nobody does."""
+    _, s, e = made
+    s["pv"][0], e["plate_v"][0], e["plate_a"][0] = [0.02, -0.01, 0.0], [0.05, 0.02, -0.01], [0.3, 0.0, -0.2]
+    e["plate"][0] += [0.001, -0.002, 0.003]
+    place, speed = s["p"][0].copy(), s["pv"][0].copy()
+    for valid, wanted in (
+        (1, [0.3 + 24.0 * 0.03 + 0.144, 24.0 * 0.03 - 0.288, -0.2 - 24.0 * 0.01 + 0.432]),
+        (0, [-24.0 * 0.02, 24.0 * 0.01, 0.0]),
+    ):
+        s["p"], s["pv"], e["plate_valid"] = place, speed, valid
+        run(made, 1)
+        np.testing.assert_allclose(s["pa"][0], wanted, atol=1e-12)
+        np.testing.assert_allclose(s["pv"][0], speed + 1e-3 * np.array(wanted), atol=1e-15)
+        np.testing.assert_allclose(s["p"][0], place + 1e-3 * s["pv"][0], atol=1e-15)

@@ -118,3 +118,58 @@ def test_health_tells_margin_speed_and_age(bench):
     assert bench.h["joint_margin"][0] == pytest.approx(0.1)
     assert bench.h["speed_ratio"][0] == pytest.approx(0.5)
     assert bench.h["uav_age"][0] == pytest.approx(0.04)
+
+
+@pytest.mark.parametrize(("speed", "damped"), [(1.9, -38.0), (-1.9, 38.0), (1.85, -37.0), (1.75, 0.0)])
+def test_damper_of_a_fast_joint_is_20_nms_per_rad(bench, speed, damped):
+    bench.told["limit"]["torque_rate"] = np.inf
+    bench.m["qd"][0, 2] = speed
+    tau, _ = limited(bench, np.full(JOINTS, 3.0))
+    assert tau[2] == pytest.approx(3.0 + damped)
+    assert tau[1] == 3.0
+
+
+@pytest.mark.parametrize("end", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("asked", "speed", "given"),
+    [(4.0, 0.05, 4.0), (7.0, 0.05, 4.0), (7.0, -0.05, 6.0), (-3.0, 0.05, -3.0), (5.0, 0.05, 5.0)],
+)
+def test_joint_at_its_end_gets_its_weight_and_a_damper_for_what_drives_it_on(bench, end, asked, speed, given):
+    """Of a weight that asks for 5 N·m outwards: less than that is no drive, more becomes 5 N·m less 20 N·m·s/rad."""
+    bench.told["limit"]["torque_rate"] = np.inf
+    bench.m["q"][0, 3], bench.m["qd"][0, 3], bench.board["arm"]["gravity"][0, 3] = end * 1.99, end * speed, end * 5.0
+    tau, flags = limited(bench, np.array([0, 0, 0, end * asked, 0, 0, 0]))
+    assert tau[3] == pytest.approx(end * given)
+    assert flags == Limit.JOINT_POSITION
+
+
+def test_health_tells_the_worst_joint_and_the_limits_keep_it(bench):
+    """Of several joints the nearest to its end, on either side, and the fastest, in either direction."""
+    bench.m["q"][0, :3], bench.m["qd"][0, :3] = [1.7, -1.8, 1.0], [0.5, -1.5, 1.0]
+    limited(bench, np.array([10.0, -40.0, 20.0, 0, 0, 0, 0]))
+    assert bench.h["joint_margin"][0] == bench.kept["limit"]["joint_margin"][0] == pytest.approx(0.2)
+    assert bench.h["speed_ratio"][0] == bench.kept["limit"]["speed_ratio"][0] == pytest.approx(0.75)
+    assert bench.h["torque_ratio"][0] == pytest.approx(0.4)
+    assert bench.h["tick"][0] == bench.c["tick"][0] == 1000
+
+
+@pytest.mark.parametrize("direction", [(2.0, -1.0, 2.0), (0.0, 0.0, -3.0)])
+def test_hinge_force_is_flagged_by_its_length(bench, direction):
+    most = bench.told["limit"]["hinge_max"][0]
+    for share, flag in ((0.95, 0), (1.05, Limit.HINGE_FORCE)):
+        bench.e["hinge_force"] = share * most / 3.0 * np.array(direction)
+        assert limited(bench, np.zeros(JOINTS))[1] == flag
+
+
+@pytest.mark.parametrize(("late", "flag"), [(0, 0), (1, Limit.UAV_STALE)])
+def test_uav_is_stale_from_one_tick_beyond_its_age(bench, late, flag):
+    bench.m["uav_tick"] = 1000 - bench.told["limit"]["uav_age"][0] - late
+    assert limited(bench, np.zeros(JOINTS))[1] == flag
+
+
+def test_first_torque_is_not_held_against_one_that_there_was_not(bench):
+    bench.kept["limit"]["started"] = 0
+    assert (limited(bench, np.full(JOINTS, 50.0))[0] == 50.0).all()
+    tau, flags = limited(bench, np.zeros(JOINTS))
+    np.testing.assert_allclose(tau, 48.5)
+    assert flags == Limit.TORQUE_RATE

@@ -3,7 +3,7 @@
 import pytest
 
 from armland.mission.missions.landing import PHASES as LANDING
-from armland.mission.missions.lifting import PHASES as TAKEOFF
+from armland.mission.missions.takeoff import PHASES as TAKEOFF
 from armland.mission.registry import MISSIONS
 from armland.mission.supervisor.ends import FINALS, HINGED_FINALS
 from armland.mission.supervisor.table import (

@@ -89,3 +89,83 @@ def test_all_tables_have_one_type_and_a_larger_one_is_refused():
     )
     with pytest.raises(ConfigurationError, match=f"{PHASES + 2} phases, where a table has room for {PHASES}"):
         compiled((*chain, Phase("end", arm="hold", uav="off", final=True)))
+
+
+def test_guard_opens_where_all_its_conditions_hold_and_not_where_one_does():
+    """Two signals, in both orders: the tilt alone, the offset alone, both."""
+    table = compile_table(mission(Guard("end", (NEAR, Condition("tilt", ">", "far_m")))), BOUNDS, SHARES, LOADS, TICK_S)
+    for offset, tilt, opens in ((0.001, 0.0, False), (0.1, 1.0, False), (0.001, 1.0, True)):
+        kept = np.zeros(1, kept_layout())
+        kept["signals"][0, SIGNAL["offset"]], kept["signals"][0, SIGNAL["tilt"]] = offset, tilt
+        assert (next_phase(0, 0.0, kept[0], table[0]) == 1) == opens
+
+
+@pytest.mark.parametrize(("offset", "opens"), [(0.004, None), (0.0039, "end"), (0.015, None), (0.0151, "lost")])
+def test_threshold_itself_opens_nothing(offset, opens):
+    guards = Guard("end", (NEAR,)), Guard("lost", (FAR,))
+    assert follow(mission(*guards), [offset]) == [opens or "begin"]
+
+
+def test_guards_count_on_their_own():
+    """One that holds now and then does not disturb one that holds throughout."""
+    guards = Guard("lost", (NEAR,), 0.003), Guard("end", (Condition("offset", "<", "far_m"),), 0.005)
+    assert follow(mission(*guards), [0.001, 0.01, 0.001, 0.01, 0.001]) == ["begin"] * 4 + ["end"]
+
+
+def test_each_phase_has_its_own_guards_and_words():
+    first = Phase(
+        "a",
+        arm="join",
+        uav="ramp",
+        magnet="on",
+        link="held",
+        held=True,
+        observe=True,
+        guards=(Guard("b", (NEAR,)),),
+        on_timeout="end",
+    )
+    second = Phase(
+        "b",
+        arm="move",
+        uav="level",
+        free=True,
+        duration_s=2.0,
+        timeout_s=7.0,
+        guards=(Guard("end", (FAR,)), Guard("a", (NEAR, FAR))),
+        on_timeout="end",
+    )
+    end = Phase("end", arm="hold", uav="off", final=True)
+    far = {"near_m": 0.02, "far_m": 0.015}
+    table = compile_table((first, second, end), far, SHARES, LOADS, TICK_S)
+    a, b, last = table["phases"][0, :3]
+    assert (a["held"], a["free"], a["observe"], a["final"]) == (1, 0, 1, 0)
+    assert (b["held"], b["free"], b["observe"], b["duration"], b["timeout"]) == (0, 1, 0, 2.0, 7.0)
+    assert (a["first"], a["end"], b["first"], b["end"], last["first"], last["end"]) == (0, 1, 1, 3, 3, 3)
+    assert [int(g["target"]) for g in table["guards"][0, :3]] == [1, 2, 0]
+    assert [(int(g["first"]), int(g["end"])) for g in table["guards"][0, :3]] == [(0, 1), (1, 2), (2, 4)]
+    # An end that is timed out stays where it is.
+    assert (int(a["on_timeout"]), int(last["on_timeout"])) == (2, 2)
+    conditions = table["conditions"][0, :4]
+    np.testing.assert_array_equal(conditions["sign"], [-1.0, 1.0, -1.0, 1.0])
+    np.testing.assert_array_equal(conditions["threshold"], [0.02, 0.015, 0.02, 0.015])
+
+
+@pytest.mark.parametrize(("name", "miss"), [("miss", 1), ("other", -1)])
+def test_phase_that_counts_as_a_retry_is_the_one_of_that_name(name, miss):
+    lost = Phase(name, arm="hold", uav="off", on_timeout="end")
+    begin = Phase("begin", arm="hold", uav="off", guards=(Guard(name, (FAR,)),), on_timeout="end")
+    end = Phase("end", arm="hold", uav="off", final=True)
+    assert compiled((begin, lost, end))["miss"][0] == miss
+
+
+def test_table_has_room_for_as_many_as_it_says_and_faults_matter_nowhere_yet():
+    end = Phase("end", arm="hold", uav="off", final=True)
+    chain = tuple(
+        Phase(f"p{i}", arm="hold", uav="off", on_timeout=f"p{i + 1}" if i < PHASES - 2 else "end")
+        for i in range(PHASES - 1)
+    )
+    assert len(chain) + 1 == PHASES
+    assert (compiled((*chain, end))["faults"] == -1).all()
+    compiled(mission(*(Guard("end", (NEAR,)) for _ in range(GUARDS))))
+    assert CONDITIONS % 40 == 0
+    compiled(mission(*(Guard("end", (NEAR,) * (CONDITIONS // 40)) for _ in range(40))))

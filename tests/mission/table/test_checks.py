@@ -56,3 +56,72 @@ def test_missions_are_free_of_contradictions(name):
     mission = MISSIONS[name]
     scenario = load_scenario("paper" if mission.start == "hinged" else "landing")
     assert check(mission.phases(scenario), thresholds_of(mission, scenario)) == []
+
+
+WIDE = {**BOUNDS, "mid_m": 0.01, "low_m": 0.001}
+
+
+@pytest.mark.parametrize(
+    ("conditions", "contradicts"),
+    [
+        ((("offset", ">", "low_m"), ("offset", "<", "near_m")), False),
+        ((("offset", ">", "low_m"), ("offset", ">", "mid_m"), ("offset", "<", "near_m")), True),
+        ((("offset", ">", "low_m"), ("offset", "<", "far_m"), ("offset", "<", "low_m")), True),
+        ((("offset", ">", "near_m"), ("offset", "<", "near_m")), True),
+        ((("offset", ">", "mid_m"), ("tilt", "<", "near_m")), False),
+    ],
+)
+def test_the_tightest_bounds_of_a_signal_count_and_no_other_signals(conditions, contradicts):
+    guard = Guard("end", tuple(Condition(*c) for c in conditions))
+    lines = check(mission(guard), WIDE)
+    assert any("at once" in line for line in lines) == contradicts
+    assert bool(lines) == contradicts
+
+
+@pytest.mark.parametrize(
+    "condition", [("altitude", "<", "near_m"), ("offset", "=", "near_m"), ("offset", "<", "nowhere_m")]
+)
+def test_condition_that_says_nothing_known_is_named(condition):
+    lines = check(mission(Guard("end", (Condition(*condition),))), BOUNDS)
+    assert len(lines) == 1
+    assert f"condition {' '.join(condition)!r}" in lines[0]
+
+
+@pytest.mark.parametrize(("hold", "fits"), [(9.9, True), (10.0, False)])
+def test_guard_must_be_able_to_hold_before_the_time_out(hold, fits):
+    assert (check(mission(Guard("end", (NEAR,), hold)), BOUNDS) == []) == fits
+
+
+@pytest.mark.parametrize(("duration", "fits"), [(9.9, True), (10.0, False)])
+def test_time_out_must_leave_time_for_the_move(duration, fits):
+    assert (check(mission(duration_s=duration), BOUNDS) == []) == fits
+
+
+@pytest.mark.parametrize(
+    ("magnet", "uav", "fits"), [("on", "level", True), ("off", "hinged", True), ("off", "level", False)]
+)
+def test_uav_is_held_by_a_magnet_or_by_its_hinge(magnet, uav, fits):
+    assert (check(mission(held=True, magnet=magnet, uav=uav), BOUNDS) == []) == fits
+
+
+def test_end_that_only_a_fault_leads_to_is_no_island_and_needs_no_way_on():
+    extra = Phase("safe", arm="brake", uav="autonomous", kind="end", final=True)
+    assert check((*mission(), extra), BOUNDS) == []
+
+
+def test_phase_is_reached_through_guards_and_time_outs_of_others():
+    """a → b by a guard, b → c by its time-out, c → end: none of them is an island, and all lead to an end."""
+    a = Phase("a", arm="hold", uav="off", guards=(Guard("b", (NEAR,)),), on_timeout="a")
+    b = Phase("b", arm="hold", uav="off", on_timeout="c")
+    c = Phase("c", arm="hold", uav="off", guards=(Guard("end", (NEAR,)),), on_timeout="b")
+    end = Phase("end", arm="hold", uav="off", final=True)
+    assert check((a, b, c, end), BOUNDS) == []
+    # Without c's guard two of them go round for ever, and the third leads there.
+    lines = check((a, b, c._replace(guards=()), end), BOUNDS)
+    assert lines == [f"phase {n!r} leads to no end" for n in "abc"]
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_threshold_must_be_a_finite_number_whether_it_is_used_or_not(value):
+    lines = check(mission(), {**BOUNDS, "unused": value})
+    assert lines == [f"threshold unused = {value} is not a finite number"]

@@ -22,3 +22,27 @@ def test_claim_is_the_larger_of_published_and_fitted():
     claim(1.0, camera_told(Camera(marker_size_m=0.08), 1000)[0], sigma)
     tilt, yaw = 2.0 * 3.3e-3 / 0.08, np.sqrt(2.0) * 0.7e-3 / 0.08
     np.testing.assert_allclose(sigma, [0.7e-3, 0.7e-3, 3.3e-3, tilt, tilt, yaw])
+
+
+def test_smaller_marker_is_the_same_picture_at_another_scale():
+    """A marker of half the size at half the distance: half the error of position, the same of angle."""
+    found = {}
+    for share in (1.0, 0.5):
+        p, sigma = camera_told(Camera(marker_size_m=0.06 * share), 1000), np.zeros(6)
+        # Nothing is published: what is left is the fit.
+        p["lateral"] = p["depth"] = 0.0
+        claim(1.2 * share, p[0], sigma)
+        found[share] = sigma
+    np.testing.assert_allclose(found[0.5], found[1.0] * [0.5, 0.5, 0.5, 1.0, 1.0, 1.0])
+    # Twice as far, each grows by its own power.
+    far = np.zeros(6)
+    p = camera_told(Camera(marker_size_m=0.06), 1000)
+    p["lateral"] = p["depth"] = 0.0
+    claim(2.4, p[0], far)
+    np.testing.assert_allclose(np.log2(far / found[1.0]), [2.38, 2.38, 1.91, 1.56, 1.56, 1.64])
+
+
+def test_smaller_cells_of_the_marker_are_smeared_sooner():
+    b = np.array(DETECTOR.smeared)
+    assert loss(8.0, 5.0, b) > loss(8.0, 10.0, b) > loss(8.0, 20.0, b)
+    assert loss(9.0, 10.0, b) > loss(8.0, 10.0, b)

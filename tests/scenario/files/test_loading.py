@@ -282,7 +282,8 @@ def test_byte_order_mark_changes_nothing(tmp_path) -> None:
 LARGE = {
     "too large": (b"#" * (LARGEST + 1), "a.toml has 1000001 bytes; a scenario has at most 1000000"),
     "binary": (bytes(range(256)), "a.toml is not valid TOML"),
-    "dotted depth": (b"a." * 50_000 + b"b = 1", "nested too deeply"),
+    "dotted depth": (b"a." * 490_000 + b"b = 1", "nested too deeply"),
+    "quoted depth": (b"title = 'x'\n[\"a\" . 'b' . " + b"c . " * 200_000 + b"b]", "nested too deeply"),
     "listed depth": (b"title = " + b"[" * 50_000, "nested too deeply"),
     "digits": (b"[run]\nseed = " + b"9" * 5000, "a.toml is not valid TOML"),
     "hexadecimal digits": (b"[run]\nseed = 0x" + b"f" * 90_000, "an integer of 360000 bits; it may have 63"),

@@ -10,7 +10,7 @@ from armland.experiments.envelope.interception import Tracked
 from armland.experiments.envelope.study import EnvelopeStudy, Flown
 from armland.view.figures.canvas import paper_style
 from armland.view.figures.envelope import draw_envelope, envelope_figure, in_units
-from armland.view.tables.envelope import print_envelope
+from armland.view.tables.studies import print_envelope
 
 
 @pytest.fixture

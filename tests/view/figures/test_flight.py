@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from armland.errors import LogError
-from armland.experiments.judge.phases import PhaseTime, phase_times
+from armland.experiments.judge.judgement import PhaseTime, phase_times
 from armland.models.environment import STANDARD_GRAVITY
 from armland.scenario import load_scenario
 from armland.view.figures.canvas import paper_style

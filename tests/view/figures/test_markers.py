@@ -11,12 +11,11 @@ from armland.view.figures.markers import (
     draw_marker_figure,
 )
 from armland.view.tables.markers import errors_table, sight_table
-from armland.vision.eye import Shot
 from armland.vision.fiducial import Detection
+from armland.vision.flight import Shot
 from armland.vision.imaging import Motion
-from armland.vision.rows import Errors, Row
 from armland.vision.scene import build_marker_scene
-from armland.vision.study import FACING
+from armland.vision.study import FACING, Errors, Row
 
 CAMERA = Camera(marker_size_m=0.06)
 

@@ -8,7 +8,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from armland.errors import LogError
-from armland.view.figures.canvas import DPI, paper_style, save
+from armland.view.figures.canvas import DPI, drawn, paper_style
 from armland.view.figures.curves import clocked
 from armland.view.figures.paper import FIGURES, PUBLISHED_DEG, attitude_figure, draw_paper_figures, position_figure
 from armland.view.flown import Flown
@@ -60,8 +60,7 @@ def test_same_runs_give_the_same_bytes(files, runs, tmp_path) -> None:
 def test_users_matplotlib_settings_neither_matter_nor_change(files, runs, tmp_path) -> None:
     with matplotlib.rc_context({"font.size": 20.0, "axes.facecolor": "red", "pdf.fonttype": 3}):
         before = dict(matplotlib.rcParams)
-        with paper_style():
-            save(attitude_figure(clocked(runs)), tmp_path, "fig6a_attitude")
+        drawn(tmp_path, {"fig6a_attitude": lambda: attitude_figure(clocked(runs))})
         assert dict(matplotlib.rcParams) == before
     reference = next(f for f in files if f.name == "fig6a_attitude.pdf")
     assert (tmp_path / "fig6a_attitude.pdf").read_bytes() == reference.read_bytes()

@@ -7,9 +7,8 @@ import pytest
 
 from armland.experiments.proof.verification import prove
 from armland.scenario import load_scenario
-from armland.view.figures.attribution import GROUPS
 from armland.view.figures.canvas import paper_style
-from armland.view.figures.proof import FIGURES, draw_proof_figures, jump_figure, times_figure
+from armland.view.figures.proof import FIGURES, GROUPS, draw_proof_figures, jump_figure, times_figure
 from armland.view.tables.proof import print_proof
 
 SHORT = {"trajectory": {"moves": [{"to_m": [0.05, 0.03, 0.0], "duration_s": 0.6, "rest_s": 0.2}]}}

@@ -1,7 +1,6 @@
 import pytest
 
-from armland.experiments.takeoff_weight.flights import FlownLimit
-from armland.experiments.takeoff_weight.study import TakeoffWeight
+from armland.experiments.takeoff_weight.study import FlownLimit, TakeoffWeight
 from armland.experiments.takeoff_weight.theory import Theory
 from armland.scenario import load_scenario
 from armland.view.figures.canvas import paper_style

@@ -2,13 +2,10 @@
 
 import math
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from armland.cli import options
-from armland.cli.console import compile_first, diagnostics, phases_told
-from armland.cli.exits import Judged
+from armland.cli.console import diagnostics, phases_told, ready
 from armland.cli.results import Work, publish
 
 DETECTOR_EPILOG = """**Examples**
@@ -24,36 +21,24 @@ Exit code: 0, or with --fly 1 if the landing fails; 2 for bad input, 3 if someth
 
 
 @options.taken(
-    per_distance=(Annotated[int, typer.Option(min=1, max=10_000, help="Pictures at each distance.")], 8),
-    seed=(Annotated[int, typer.Option(min=0, help="Seed of poses and picture noise, or of the landing.")], 1),
-    out=(options.out("detector"), Path("out/detector")),
-    as_json=(options.AsJson, False),
-    fit=(
-        Annotated[bool, typer.Option("--fit", help="Fit the measurement model's coefficients (some minutes).")],
-        False,
-    ),
-    fly=(
-        Annotated[bool, typer.Option("--fly", help="Fly a landing that sees by rendered pictures (minutes).")],
-        False,
-    ),
+    DETECTOR_EPILOG,
+    per_distance=options.option(int, "Pictures at each distance.", default=8, min=1, max=10_000),
+    seed=options.option(int, "Seed of poses and picture noise, or of the landing.", default=1, min=0),
+    out=options.out("detector"),
+    as_json=options.AS_JSON,
+    fit=options.option(bool, "Fit the measurement model's coefficients (some minutes).", "--fit", default=False),
+    fly=options.option(bool, "Fly a landing that sees by rendered pictures (minutes).", "--fly", default=False),
 )
 def detector(**given: Any) -> None:
     """Detect a fiducial marker on rendered pictures: pose error against distance, beside the camera's measurement model."""
-    compile_first(diagnostics())
+    ready()
     if given["fit"]:
         _fit(given["seed"])
     elif given["fly"]:
-        owned = ("fig_marker_sheet.*",)
-        raise Judged(publish(given["out"], "flight.json", owned, given["as_json"], lambda _: _fly(given["seed"])))
+        publish(given, "flight.json", ("fig_marker_sheet.*",), lambda _: _fly(given["seed"]))
     else:
-        work = publish(
-            given["out"],
-            "detector.json",
-            ("fig_marker_error.*", "fig_marker_demo.*"),
-            given["as_json"],
-            lambda _: _study(given["per_distance"], given["seed"]),
-        )
-        raise Judged(work)
+        owned = ("fig_marker_error.*", "fig_marker_demo.*")
+        publish(given, "detector.json", owned, lambda _: _study(given["per_distance"], given["seed"]))
 
 
 def _study(per_distance: int, seed: int) -> Work:
@@ -61,9 +46,8 @@ def _study(per_distance: int, seed: int) -> Work:
     from armland.scenario import load_scenario
     from armland.view.figures.markers import draw_marker_demo, draw_marker_figure
     from armland.view.tables.markers import errors_table, sight_table
-    from armland.vision.rows import rows
     from armland.vision.scene import build_marker_scene
-    from armland.vision.study import DISTANCES_M, marker_study
+    from armland.vision.study import DISTANCES_M, marker_study, rows
 
     with diagnostics().status("Rendering and detecting", spinner="line"):
         bands = by_distance(landing_sight(load_scenario("landing")))

@@ -2,12 +2,10 @@
 
 import json
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from armland.cli import options
-from armland.cli.exits import EXPLAINED, Judged
+from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
 from armland.errors import ConfigurationError
 
@@ -28,24 +26,23 @@ LOG_EPILOG = """**Examples**
 """
 
 
-def log(
-    file: Annotated[Path, typer.Argument(help="Run log (MCAP).")],
-    as_json: options.AsJson = False,
-) -> None:
+@options.taken(LOG_EPILOG, file=options.argument(Path, "Run log (MCAP).", ...), as_json=options.AS_JSON)
+def log(**given: Any) -> None:
     """Say what a run log holds."""
     from armland.runtime.log import read_log
     from armland.view.tables.log import described, print_log
 
-    found = read_log(file)
-    if as_json:
+    found = read_log(given["file"])
+    if given["as_json"]:
         print(json.dumps(described(found), indent=2))
     else:
-        print_log(found, file)
+        print_log(found, given["file"])
 
 
 @options.taken(
-    files=(Annotated[list[Path], typer.Argument(metavar="LOG...", help="Run logs (MCAP), or folders of them.")], ...),
-    out=(options.out("report"), Path("out/report")),
+    REPORT_EPILOG,
+    files=options.argument(list[Path], "Run logs (MCAP), or folders of them.", ..., metavar="LOG..."),
+    out=options.out("report"),
     **options.SHOWN,
 )
 def report(**given: Any) -> None:
@@ -57,11 +54,11 @@ def report(**given: Any) -> None:
     result = result_of(logs)
 
     def work(_: Results) -> Work:
-        show = (lambda folder: draw(folder, logs)) if given["figures"] else None
-        return Work(succeeded(result), result, lambda out: print_run(result, logs[0], out), show)
+        return Work(
+            succeeded(result), result, lambda out: print_run(result, logs[0], out), lambda folder: draw(folder, logs)
+        )
 
-    owned = ("*_overview.p??", "fig*.p??", "scene.png")
-    raise Judged(publish(given["out"], "result.json", owned, given["as_json"], work))
+    publish(given, "result.json", ("*_overview.p??", "fig*.p??", "scene.png"), work)
 
 
 def _logs(files: list[Path]) -> list[Path]:

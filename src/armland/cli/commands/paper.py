@@ -1,14 +1,12 @@
 """The command `paper`: experiments E1 to E3 with their verdicts, and the comparison of laws."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
-import typer
 from rich.console import Console
 
 from armland.cli import options
-from armland.cli.console import compile_first, diagnostics, progress_bar, reported
-from armland.cli.exits import EXPLAINED, Judged
+from armland.cli.console import progress_bar, ready, reported
+from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
 from armland.errors import ConfigurationError
 
@@ -32,16 +30,14 @@ PAPER_EPILOG = f"""**Examples**
 
 
 @options.taken(
-    scenario=(Annotated[str, typer.Option(help=options.SCENARIO_HELP)], "paper"),
-    compared=(
-        Annotated[
-            bool, typer.Option("--compare", help="Compare the paper's laws with others instead (scenario compare).")
-        ],
-        False,
+    PAPER_EPILOG,
+    scenario=options.option(str, options.SCENARIO_HELP, default="paper"),
+    compared=options.option(
+        bool, "Compare the paper's laws with others instead (scenario compare).", "--compare", default=False
     ),
-    law=(options.Law, None),
+    law=options.LAW,
     **options.MADE,
-    out=(options.out("paper"), Path("out/paper")),
+    out=options.out("paper"),
     **options.SHOWN,
 )
 def paper(**given: Any) -> None:
@@ -51,12 +47,10 @@ def paper(**given: Any) -> None:
         raise ConfigurationError(f"--law needs --compare here; `armland run E3 --law {law}` flies one experiment by it")
     chosen = "compare" if compared and given["scenario"] == "paper" else given["scenario"]
     loaded = options.load(chosen, given, hinged=True)
-    console = diagnostics()
-    compile_first(console)
-    raise Judged(_compare(loaded, given, console) if compared else _paper(loaded, given, console))
+    (_compare if compared else _paper)(loaded, given, ready())
 
 
-def _paper(scenario: "Scenario", given: dict[str, Any], console: Console) -> bool:
+def _paper(scenario: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:
     from armland.experiments.paper import prepare, run_experiments
     from armland.runtime.log import read_log
     from armland.view.report import draw
@@ -66,20 +60,20 @@ def _paper(scenario: "Scenario", given: dict[str, Any], console: Console) -> boo
         flights = prepare(scenario)
 
     def work(results: Results) -> Work:
-        with progress_bar(console) as bar:
-            outcome = run_experiments(flights, results.folder, reported(bar))
+        with reported(console) as tell:
+            outcome = run_experiments(flights, results.folder, tell)
         result = outcome.result()
+        return Work(
+            outcome.reproduced,
+            result,
+            lambda out: print_paper(result, out),
+            lambda folder: draw(folder, [read_log(given["out"] / f"{name}.mcap") for name in flights]),
+        )
 
-        def illustrate(folder: Path) -> None:
-            draw(folder, [read_log(given["out"] / f"{name}.mcap") for name in flights])
-
-        show = illustrate if given["figures"] else None
-        return Work(outcome.reproduced, result, lambda out: print_paper(result, out), show)
-
-    return publish(given["out"], "result.json", ("*.mcap", "fig*.p??", "scene.png"), given["as_json"], work)
+    publish(given, "result.json", ("*.mcap", "fig*.p??", "scene.png"), work)
 
 
-def _compare(scenario: "Scenario", given: dict[str, Any], console: Console) -> bool:
+def _compare(scenario: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:
     from armland.experiments.comparison import compare
     from armland.view.tables.paper import print_comparison
 
@@ -94,4 +88,4 @@ def _compare(scenario: "Scenario", given: dict[str, Any], console: Console) -> b
         result = comparison.result()
         return Work(all(v.holds for v in comparison.verdicts), result, lambda out: print_comparison(result, out))
 
-    return publish(given["out"], "comparison.json", (), given["as_json"], work)
+    publish(given, "comparison.json", (), work)

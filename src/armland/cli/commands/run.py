@@ -1,14 +1,13 @@
 """The commands that fly a mission: `run`, and `land` and `takeoff`, which are names for it."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
-import typer
 from rich.console import Console
 
 from armland.cli import options
-from armland.cli.console import compile_first, diagnostics, flights_told, phases_told
-from armland.cli.exits import EXPLAINED, Judged
+from armland.cli.console import flights_told, phases_told, ready
+from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
 
 if TYPE_CHECKING:
@@ -35,17 +34,16 @@ same keys does in a scenario's file.
 
 """
 
-LAND_EPILOG = (
-    _EPILOG.replace("COMMAND", "land").replace("MISSION", "landing").replace("FOLDER", "land").replace("PHASE", "carry")
-    + EXPLAINED
-)
-TAKEOFF_EPILOG = (
-    _EPILOG.replace("COMMAND", "takeoff")
-    .replace("MISSION", "take-off")
-    .replace("FOLDER", "takeoff")
-    .replace("PHASE", "carry_up")
-    + EXPLAINED
-)
+
+def _epilog(**words: str) -> str:
+    text = _EPILOG
+    for word, replacement in words.items():
+        text = text.replace(word, replacement)
+    return text + EXPLAINED
+
+
+LAND_EPILOG = _epilog(COMMAND="land", MISSION="landing", FOLDER="land", PHASE="carry")
+TAKEOFF_EPILOG = _epilog(COMMAND="takeoff", MISSION="take-off", FOLDER="takeoff", PHASE="carry_up")
 RUN_EPILOG = f"""**Examples**
 
 `armland run landing` is `armland land`; `armland run E3` flies the third of the paper's experiments.
@@ -60,19 +58,13 @@ RUN_EPILOG = f"""**Examples**
 """
 
 
-MISSION = Annotated[
-    str, typer.Argument(help="Name of a mission: landing, takeoff, E1, E2, E3, track, or one of your own.")
-]
-OWN = Annotated[str | None, typer.Argument(help=f"{options.SCENARIO_HELP} The mission's own if absent.")]
-ROW = Annotated[str | None, typer.Option(help="Row of the scenario's experiments, for the mission `track`.")]
-
-
 @options.taken(
-    mission=(MISSION, ...),
-    scenario=(OWN, None),
-    experiment=(ROW, None),
+    RUN_EPILOG,
+    mission=options.argument(str, "Name of a mission: landing, takeoff, E1, E2, E3, track, or one of your own.", ...),
+    scenario=options.argument(str | None, f"{options.SCENARIO_HELP} The mission's own if absent."),
+    experiment=options.option(str | None, "Row of the scenario's experiments, for the mission `track`."),
     **options.FLOWN,
-    out=(options.out("MISSION"), None),
+    out=options.out("MISSION"),
 )
 def run(**given: Any) -> None:
     """Fly any mission: the landing, the take-off, the paper's experiments, or a row of your own."""
@@ -80,32 +72,31 @@ def run(**given: Any) -> None:
     _fly(mission, {**given, "out": given["out"] or Path("out") / mission})
 
 
-@options.taken(scenario=options.scenario("landing"), **options.FLOWN, out=(options.out("land"), Path("out/land")))
+@options.taken(LAND_EPILOG, scenario=options.scenario("landing"), **options.FLOWN, out=options.out("land"))
 def land(**given: Any) -> None:
     """Land a UAV: approach, capture, hand-over, set-down and release, with live progress by phase."""
     _fly("landing", given)
 
 
-@options.taken(scenario=options.scenario("landing"), **options.FLOWN, out=(options.out("takeoff"), Path("out/takeoff")))
+@options.taken(TAKEOFF_EPILOG, scenario=options.scenario("landing"), **options.FLOWN, out=options.out("takeoff"))
 def takeoff(**given: Any) -> None:
     """Take off from the cradle: lift, spin up, carry upwards, release, fly off; with live progress by phase."""
     _fly("takeoff", given)
 
 
-def _fly(mission: str, given: dict[str, Any]) -> None:
+def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
     from armland.mission.registry import mission_named
 
     hinged = mission_named(mission).start == "hinged"
     loaded = options.load(given["scenario"] or ("paper" if hinged else "landing"), given, hinged)
-    console = diagnostics()
-    compile_first(console)
+    console = ready()
     from armland.experiments.episode import prepare
 
     flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))
-    raise Judged((_campaign if given["seeds"] > 1 else _single)(flight, mission, given, console))
+    (_campaign if given["seeds"] > 1 else _single)(flight, mission, given, console)
 
 
-def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> bool:
+def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> NoReturn:
     from armland.experiments.episode import fly_prepared
     from armland.experiments.judge.brief import brief_of
     from armland.records import MESSAGES
@@ -114,34 +105,31 @@ def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Cons
     from armland.view.report import draw
     from armland.view.tables.flight import print_flight
 
-    name, log, figures, out = f"{mission}.mcap", given["log"], given["figures"], given["out"]
+    name, out = f"{mission}.mcap", given["out"]
 
     def work(results: Results) -> Work:
         # The figures are made from the log, also where nobody keeps it.
-        file = results.folder / name if log else results.scratch(name) if figures else None
+        file = results.folder / name if given["log"] else results.scratch(name) if given["figures"] else None
         with phases_told(console, mission) as tell:
             episode = fly_prepared(flight, file, tell)
-
-        def illustrate(folder: Path) -> None:
-            draw(folder, [read_log(out / name if log else results.scratch(name))])
-
         run = Flown(mission, {name: episode.ticks[name] for name in MESSAGES}, brief_of(episode.metadata))
-        show = illustrate if figures else None
         return Work(
-            episode.result["success"], episode.result, lambda folder: print_flight(episode.result, run, folder), show
+            episode.result["success"],
+            episode.result,
+            lambda folder: print_flight(episode.result, run, folder),
+            lambda folder: draw(folder, [read_log(out / name if given["log"] else results.scratch(name))]),
         )
 
-    return publish(out, "result.json", (name, "*_overview.p??", "fig*.p??", "scene.png"), given["as_json"], work)
+    publish(given, "result.json", (name, "*_overview.p??", "fig*.p??", "scene.png"), work)
 
 
-def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> bool:
-    from armland.experiments.campaign import campaign
-    from armland.experiments.episode import bounds
-    from armland.experiments.summary import summarise
+def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> NoReturn:
+    from armland.experiments.campaign import campaign, summarise
+    from armland.experiments.judge.figures import bounds
     from armland.view.figures.campaign import draw_campaign
     from armland.view.tables.campaign import print_campaign
 
-    first, seeds, limits = flight.scenario.run.seed, given["seeds"], bounds(flight)
+    first, seeds, limits = flight.scenario.run.seed, given["seeds"], bounds(flight.brief)
     how = {"law": given["law"], "experiment": given.get("experiment"), "jobs": given["jobs"]}
 
     def work(_: Results) -> Work:
@@ -150,8 +138,11 @@ def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Co
                 flight.scenario, mission, range(first, first + seeds), **how, done=lambda row: tell(row["success"])
             )
         summary = summarise(rows, limits)
-        draw = (lambda folder: draw_campaign(folder, rows, limits, mission)) if given["figures"] else None
-        data = {"summary": summary.result(), "flights": rows}
-        return Work(summary.successes == seeds, data, lambda out: print_campaign(summary, rows, mission, out), draw)
+        return Work(
+            summary.successes == seeds,
+            {"summary": summary.result(), "flights": rows},
+            lambda out: print_campaign(summary, rows, mission, out),
+            lambda folder: draw_campaign(folder, rows, limits, mission),
+        )
 
-    return publish(given["out"], "campaign.json", (f"{mission}_campaign.p??",), given["as_json"], work)
+    publish(given, "campaign.json", (f"{mission}_campaign.p??",), work)

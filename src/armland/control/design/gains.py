@@ -41,6 +41,9 @@ MAX_SENSITIVITY = 2.5
 LEAST_SHARE = 0.04
 """Least share of k₃ in the stiffness; the published gains have 0.037. k₃ ties the attitude to the position error."""
 
+DERIVATIVE_LAG_S = 0.01
+"""Low pass of the derivative with which a cascade on board makes up for rotor lag, s."""
+
 _LONGEST = 0.5  # s, longest delay searched for what a bandwidth allows
 
 Loops = Callable[[float, float], tuple[Loop, ...]]

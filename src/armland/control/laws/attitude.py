@@ -178,7 +178,7 @@ def feed_forward(R: Array, force: Array, lever: Array, limit: Array) -> Array:
         lever: ρ (3,), m, body.
         limit: (3,), N·m.
 
-    Source: (X.6): it is right only where the hinge's force is what it is taken for.
+    Source: (X.6). The moment is cancelled exactly only if `force` is the true hinge force.
     """
     torque = cross(lever, turned_back(R, force))
     for i in range(3):

@@ -8,7 +8,7 @@
 | ω₀ | `rate`: √(m g l/(J + m l²)) | rad/s |
 | ξ | capture point, as an angle | 1 |
 | k_x, k_v, k_θ, k_ω | `BalanceGains` | 1/s², 1/s, m/s², m/s |
-| g | `fall`: what the UAV falls with | m/s² |
+| g | `gravity` | m/s² |
 
 About each horizontal axis (J + m l²) θ̈ = m g l θ − m l ẍ, so
 

@@ -50,8 +50,8 @@ def feasible(
 def takeover(R: Array, lost_thrust: float, lost_torque: Array, lever: Array, limit: float) -> tuple[Array, Array]:
     """Force dF (3,), N, D, with which the arm replaces what the rotors do not give, and the moment (3,), N·m, body, still lost.
 
-    The thrust is replaced whole; `limit`, N, bounds the part of dF that is there for the moment's sake. A law evaluated
-    with the thrust given instead of the one asked for has replaced it by itself: then `lost_thrust` is 0.
+    The thrust is replaced in full; `limit`, N, bounds only the part of dF that replaces torque. A law that is evaluated with the
+    thrust given, and not with the one asked for, has replaced the thrust already: then `lost_thrust` is 0.
 
     Source: (X.4).
     """

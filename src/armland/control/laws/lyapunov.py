@@ -43,7 +43,7 @@ def turning(q_e: Array, omega_e: Array) -> Array:
 def tracking_input(
     alpha_dot: Array, z2: Array, a_uav: Array, R: Array, uav: UavParameters, k2: Array
 ) -> tuple[Array, Array]:
-    """B̄⁻¹(M_uav α̇ − K₂z₂ − a_uav): delta_tau (3,), N·m, body, and force (3,), N, D, that leave of (29) the term in k₃ only.
+    """B̄⁻¹(M_uav α̇ − K₂z₂ − a_uav): delta_tau (3,), N·m, body, and force (3,), N, D, of (29) without its term in k₃.
 
     Args:
         alpha_dot: α̇ (6,), rad/s², body, and m/s², D.
@@ -63,7 +63,7 @@ def tracking_input(
 
 @njit(cache=True)
 def storage(q_e: Array, gradient: Array, z2: Array, uav: UavParameters, gains: ExactGains) -> tuple[float, float]:
-    """V₂, J, and the rate V̇₂ ≤ 0, W, that a law gives it by which the errors obey (30).
+    """V₂, J, and its rate V̇₂ ≤ 0, W, under a law for which (30) holds.
 
     Args:
         q_e: attitude error (4,).

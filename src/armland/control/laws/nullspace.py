@@ -1,9 +1,9 @@
-"""What the arm does beside its end effector: elbow pulled down, joints kept from their ends, damping; compiled.
+"""Null-space behaviour of the arm: elbow pulled down, joints kept from their ends, damping; compiled.
 
 | symbol | name | unit |
 |---|---|---|
-| τ₀ | what is wished, `null_space_wish` (n,) | N·m |
-| τ_nsp | its part that moves no end effector, `models.operational.null_space_torque` | N·m |
+| τ₀ | wanted joint torque, `null_space_wish` (n,) | N·m |
+| τ_nsp | its part that does not accelerate the end effector, `models.operational.null_space_torque` | N·m |
 """
 
 import numpy as np

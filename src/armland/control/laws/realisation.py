@@ -1,4 +1,4 @@
-"""From what the end effector shall do to joint torques (35), and the acceleration that a law implies (X.2); compiled.
+"""Joint torques for a wanted force and acceleration of the end effector (35), and the acceleration that a law implies (X.2); compiled.
 
 | symbol | name | unit |
 |---|---|---|
@@ -108,7 +108,7 @@ def arm_torque(
         qd: joint velocities (n,), rad/s.
         acceleration: ẍ (6,), m/s², rad/s², D, that the end effector shall have; zeros feed none forward.
         wrench: (6,), N, N·m, D, of the end effector on what it carries; may hold μ ẋ_d.
-        velocity_terms: whether the arm's own velocity-dependent torques are made up for, so that it has just that acceleration.
+        velocity_terms: whether the arm's velocity-dependent torques are compensated, so that its acceleration is exactly ẍ.
         arm: of `models.chain.state_layout`, its velocity terms included where they are asked for.
         p: of `told_layout`.
         tau: written.
@@ -133,10 +133,10 @@ def arm_torque(
 
 @njit(cache=True)
 def held_acceleration(R: Array, omega: Array, force: Array, uav: UavParameters, gravity: Gravity) -> Array:
-    """r̈_p (3,), m/s², D: acceleration of the pivot that the force means, v̇ + R(ω × (ω × ρ)).
+    """r̈_p (3,), m/s², D: acceleration of the pivot that the force implies, v̇ + R(ω × (ω × ρ)).
 
-    Fed forward to the arm as Λ r̈_p it makes the hinge's force what was asked of it in the nominal model. R(ω̇ × ρ) is left out: the
-    torques on board cancel the hinge's in (X.6), what is left turns the UAV little, and noise would dominate it.
+    Fed forward to the arm as Λ r̈_p it makes the hinge force equal to the force asked for, in the nominal model. R(ω̇ × ρ) is left out:
+    under (X.6) the torques on board cancel the hinge's, so ω̇ is small, and noise would dominate it.
 
     Args:
         R: rotation (3, 3), D<-B.

@@ -3,7 +3,7 @@
 | symbol | name | unit, frame |
 |---|---|---|
 | R | `R` (3, 3) | 1, D<-B |
-| ω, v, ν = (ω, v) | `omega`, `v` (3,), `nu` (6,) | rad/s, body; m/s, D, centre of mass (CM) |
+| ω, v, ν = (ω, v) | `omega`, `v` (3,); `nu_dot` (6,) is ν̇ | rad/s, body; m/s, D, centre of mass (CM) |
 | m, J, ρ | `uav.mass`, `uav.inertia` (3, 3), `uav.lever` (3,) | kg; kg·m² about the CM, body; m, CM → pivot, body |
 | f_T, τ_att | `thrust`, `tau_att` (3,) | N along the body's z; N·m, body |
 | u = (Δτ_att, F_EE) | `delta_tau`, `force` (3,) | N·m, body; N, D, on the UAV at the pivot |
@@ -11,8 +11,8 @@
 | a_uav, M_uav ν̇, B̄⁻¹ | `drift`, `inertial` (6,), `input_for` | N·m, N |
 
 Compiled functions take one sample: float64 arrays, C-contiguous. Parameters are checked once, by `check`, and not at every sample.
-On a moving deck rates and velocities are those seen from it, γ is its apparent gravity, and what its rotation seems to do to the body
-is part of τ_att, see `models.environment`.
+On a moving deck, rates and velocities are relative to it, γ is its apparent gravity, and the apparent moment that its rotation
+puts on the body is part of τ_att, see `models.environment`.
 """
 
 from typing import NamedTuple

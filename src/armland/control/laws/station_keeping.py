@@ -10,12 +10,12 @@
 | f_T, q_d | `thrust`, desired attitude (4,) | N, 1 |
 
 v_w = v_d + sat(k_p (r_d − r)), a_w = a_d + k_v (v_w − v) + i − d, F = m (a_w − γ) (K.1), i̇ = k_i (v_w − v); q_d turns b_z
-into F's direction and has the heading ψ_d. The reference may jump: the speed that is asked for is limited.
+into F's direction and has the heading ψ_d. sat limits the speed that is asked for, so the reference may jump.
 
 Limits: F_z is kept in [`lift_min`, `thrust_max` cos `tilt_max`] and the horizontal part of F below F_z tan `tilt_max`. So |F|
-is never beyond `thrust_max`, and however hard the UAV climbs, the whole tilt stays available. f_T = F_z / (b_z·e₃): the
-vertical force is what was asked for, also while the attitude still follows. i stops, vertically and horizontally, where F
-is at a limit and the error drives it on.
+never exceeds `thrust_max`, and the whole tilt stays available however hard the UAV climbs. f_T = F_z / (b_z·e₃) gives the vertical
+force that was asked for even while the attitude still lags. Anti-windup: i stops, vertically and horizontally, where F is at a limit
+and the error would drive it further.
 """
 
 from typing import NamedTuple

@@ -13,7 +13,7 @@
 | acceleration | what the arm feeds forward: nothing, ẍ_d as in (35), or what the law implies (X.2) |
 | support | static support force of (33): none, the measured z force, or the model's |
 | limited | thrust and torque within what the rotors give, the arm takes over the rest (X.4) |
-| attitude | the law holds q_d; else attitude is the board's, and the law takes it as it is |
+| attitude | whether the law controls the attitude; if not, the UAV's own controller does, and q_d is the attitude as estimated |
 """
 
 from functools import lru_cache

@@ -1,13 +1,13 @@
-"""From the UAV's idea of the world to the arm's: a small rotation that drifts, estimated from attitudes seen; compiled.
+"""Rotation from the UAV's attitude reference to the deck's axes: small, drifting, estimated from attitudes seen; compiled.
 
 | symbol | name | unit, frame |
 |---|---|---|
 | δ | `quat` (4,): q_wb = δ ⊗ q_imu | 1 |
-| θ | rotation vector that is missing in δ: q_wb = exp(θ) ⊗ δ ⊗ q_imu, a random walk | rad, D |
+| θ | error of δ, a rotation vector: q_wb = exp(θ) ⊗ δ ⊗ q_imu, a random walk | rad, D |
 | P | `P` (3, 3), covariance of θ | rad² |
 
-The UAV knows its roll and pitch from gravity but its heading hardly at all, and its gyros drift. δ changes slowly: what a late sample
-says about δ at its capture it also says about δ now.
+The UAV knows roll and pitch from gravity, but hardly its heading, and its gyros drift. δ changes slowly, so a late sample tells of the
+present δ as well as of the one at its capture.
 """
 
 import numpy as np

@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from armland.experiments.envelope.closed_forms import ClosedForms
-from armland.experiments.envelope.hinge import hinge_angles
-from armland.experiments.episode import prepare
-from armland.experiments.judge.limits import limits_violated
+from armland.experiments.envelope.sight import hinge_angles
+from armland.experiments.episode import prepare, quiet
+from armland.experiments.judge.judgement import limits_violated
 from armland.experiments.judge.whereabouts import tilt_deg
-from armland.experiments.quiet import quiet
 from armland.experiments.snapshot import Run
 from armland.mission.belief import flyer
 from armland.models.capture import GATE_M, Grip
@@ -27,14 +26,12 @@ from armland.plant.scene.uav import PLATE
 from armland.rotations import Array, from_rotation_vector, matrix
 from armland.scenario import Scenario
 
-STEADY_TICKS = 100
-"""Ticks at the end during which all pads must touch."""
+STEADY_TICKS = 100  # Ticks at the end during which all pads must touch
 
 SIGMA_M, SIGMA_MPS = 3e-3, 0.08
 """Standard deviations that the pose filter claims at the gate; small enough for a valid estimate."""
 
-NO_CONTACT_TICKS = 300
-"""Ticks after which a capture without contact is given up."""
+NO_CONTACT_TICKS = 300  # Ticks after which a capture without contact is given up
 
 
 class Start(NamedTuple):

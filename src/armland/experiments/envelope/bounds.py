@@ -11,29 +11,20 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.experiments.envelope.bench import Capture, CaptureBench, Start
-
-Progress = Callable[[str, int, int], None]
-"""Called with name, done and total."""
-
-TOP = {
-    "offset": 0.012,
-    "speed": 0.40,
-    "tilt": np.deg2rad(40.0),
-    "plate": np.deg2rad(44.0),
-    "fastest": 1.2,
-    "slowest": 0.0,
-}
-"""How far a search goes, in the unit of `Start`."""
+from armland.experiments.paper import Progress, silent
 
 QUANTITIES = {
-    "offset": "offset",
-    "speed": "speed",
-    "tilt": "tilt",
-    "plate": "plate",
-    "fastest": "closing",
-    "slowest": "closing",
+    "offset": ("offset", 0.012),
+    "speed": ("speed", 0.40),
+    "tilt": ("tilt", np.deg2rad(40.0)),
+    "plate": ("plate", np.deg2rad(44.0)),
+    "fastest": ("closing", 1.2),
+    "slowest": ("closing", 0.0),
 }
-"""The field of `Start` that each axis moves; the last two begin at the flight's own closing speed."""
+"""By axis: the field of `Start` that it moves, and how far a search goes, in that field's unit.
+
+The last two begin at the flight's own closing speed.
+"""
 
 
 class Detail(NamedTuple):
@@ -133,8 +124,8 @@ class Envelope:
         progress: called with name, done and total.
     """
 
-    def __init__(self, bench: CaptureBench, detail: Detail = STANDARD, progress: Progress | None = None) -> None:
-        self.bench, self.detail, self._progress = bench, detail, progress or (lambda *_: None)
+    def __init__(self, bench: CaptureBench, detail: Detail = STANDARD, progress: Progress = silent) -> None:
+        self.bench, self.detail, self._progress = bench, detail, progress
         b, closing = bench.scenario.bounds, bench.closing
         # The relative speed that the mission allows may as well lie along the approach.
         slowest, fastest = max(closing - b.align_speed_mps, 0.0), closing + b.align_speed_mps
@@ -152,7 +143,7 @@ class Envelope:
         """Bounds of each quantity alone, and together with the others at their thresholds."""
         a, found = self.allowed, []
         thresholds = {"offset": a.offset, "speed": a.speed, "tilt": a.tilt}
-        for done, (name, quantity) in enumerate(QUANTITIES.items()):
+        for done, (name, (quantity, _)) in enumerate(QUANTITIES.items()):
             others = {k: v for k, v in thresholds.items() if k != quantity}
             around = directions(self.detail.directions)
             if quantity == "closing":
@@ -167,9 +158,9 @@ class Envelope:
 
     def edge(self, name: str, towards: float, **others: float) -> Edge:
         """Bound of a quantity of `QUANTITIES` towards an angle, rad, with others as given."""
-        quantity, start = QUANTITIES.get(name, name), outwards(towards, **others)
+        (quantity, top), start = QUANTITIES[name], outwards(towards, **others)
         begin = self.bench.closing if quantity == "closing" else 0.0
-        return edge(lambda value: self.catch(**{**start, quantity: value}), begin, TOP[name], self.detail, towards)
+        return edge(lambda value: self.catch(**{**start, quantity: value}), begin, top, self.detail, towards)
 
     def maps(self) -> tuple[Map, ...]:
         """Boundaries of pairs towards a pad, the worst direction: there the plate bares the pad opposite first."""

@@ -12,22 +12,14 @@ class ClosedForms(NamedTuple):
     """What the closed forms need to know; masses in kg."""
 
     grip: Grip
-    mass: float
-    """Of all that flies."""
-    body: float
-    """Without the plate."""
-    arm: float
-    """Effective mass of the arm along the approach."""
-    force: float
-    """Largest hinge force, N."""
-    righting: float
-    """Acceleration of the pivot per rad of tilt with which a tilted UAV rights itself, m/s²."""
-    lag_s: float
-    """Of the rotors."""
-    tilt_max: float
-    """Tilt at which the supervisor gives up, rad."""
-    closing: float
-    """Closing speed of the flight, m/s."""
+    mass: float  # Of all that flies
+    body: float  # Without the plate
+    arm: float  # Effective mass of the arm along the approach
+    force: float  # Largest hinge force, N
+    righting: float  # Acceleration of the pivot per rad of tilt with which a tilted UAV rights itself, m/s²
+    lag_s: float  # Of the rotors
+    tilt_max: float  # Tilt at which the supervisor gives up, rad
+    closing: float  # Closing speed of the flight, m/s
 
     def bound(
         self, name: str, offset: float = 0.0, speed: float = 0.0, tilt: float = 0.0, closing: float | None = None

@@ -11,14 +11,13 @@ thresholds. What the arm itself can do at most follows from its model: joint spe
 | w | bandwidth of the filter on the plate's motion, `track` | rad/s |
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from armland.errors import PlantError
-from armland.experiments.episode import prepare
-from armland.experiments.quiet import quiet
+from armland.experiments.episode import prepare, quiet
+from armland.experiments.paper import Progress, silent
 from armland.experiments.snapshot import Run, Snapshot
 from armland.mission.belief import flyer
 from armland.models.arm import ArmModel
@@ -30,8 +29,7 @@ FREQUENCIES_HZ = (0.3, 0.5, 0.7, 1.0, 1.4, 2.0)
 SWING_M = 0.006
 """Amplitude of a free mass under the gusts: large against the camera's noise, small against what it sees."""
 
-SETTLE_S, PERIODS = 2.5, 3
-"""What is waited for before, and how many periods are fitted."""
+SETTLE_S, PERIODS = 2.5, 3  # What is waited for before, and how many periods are fitted
 
 
 class Tracked(NamedTuple):
@@ -55,9 +53,7 @@ class Tracked(NamedTuple):
 
 
 def intercept(
-    scenario: Scenario,
-    frequencies: tuple[float, ...] = FREQUENCIES_HZ,
-    progress: Callable[[str, int, int], None] | None = None,
+    scenario: Scenario, frequencies: tuple[float, ...] = FREQUENCIES_HZ, progress: Progress = silent
 ) -> tuple[Tracked, ...]:
     """Follow a swinging plate at each frequency, with the camera as it is and everything else without imperfections."""
     # A tilt that is never small enough keeps the mission in its phase of tracking.
@@ -68,8 +64,7 @@ def intercept(
     start = run.keep()
     for k, frequency in enumerate(frequencies):
         found.append(_follow(run, start, frequency))
-        if progress is not None:
-            progress("interception", k + 1, len(frequencies))
+        progress("interception", k + 1, len(frequencies))
     return tuple(found)
 
 

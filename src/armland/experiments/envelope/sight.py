@@ -7,20 +7,16 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from armland.experiments.envelope.hinge import hinge_angles
 from armland.experiments.episode import fly
 from armland.experiments.judge.brief import Ticks
 from armland.plant.scene.composition import Scene, build_scene
 from armland.plant.sight import Sight, sight
 from armland.records import Record
-from armland.rotations import matrix
+from armland.rotations import Array, matrix
 from armland.scenario import Scenario
 
-HELD_FROM = "hand_over"
-"""Phase from which the arm holds the UAV and needs no camera."""
-
-BANDS_M = (0.0, 0.14, 0.17, 0.25, 0.35, 0.45, 0.7)
-"""Bounds of the distances in `by_distance`."""
+HELD_FROM = "hand_over"  # Phase from which the arm holds the UAV and needs no camera
+BANDS_M = (0.0, 0.14, 0.17, 0.25, 0.35, 0.45, 0.7)  # Bounds of the distances in `by_distance`
 
 
 class Glance(NamedTuple):
@@ -84,3 +80,8 @@ def by_distance(seen: Sequence[Glance]) -> list[Band]:
             least = min(s.seen for s in here), min(s.in_picture for s in here)
             table.append(Band(near, far, len(here), *least, tuple(hidden)))
     return table
+
+
+def hinge_angles(R: Array) -> Array:
+    """The hinge's angles (3,) rad of the plate's attitude R (3, 3) in the body's, R = Ry Rx Rz: about y, x, then the swivel."""
+    return np.array([np.arctan2(R[0, 2], R[2, 2]), -np.arcsin(R[1, 2]), np.arctan2(R[1, 0], R[1, 1])])

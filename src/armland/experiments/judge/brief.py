@@ -1,16 +1,20 @@
-"""What the judge is told beside the recorded ticks: the mission's plan as data, kept in the log's metadata."""
+"""What a log's metadata says about its flight, written and read: all that the judge is told beside the ticks."""
 
 import json
 from collections.abc import Mapping
+from importlib.metadata import version
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from armland.errors import LogError
+from armland.mission.plan import Plan
 from armland.mission.reference.path import Leg
+from armland.mission.supervisor.table import FAULTS
 from armland.mission.table.mission import Criterion
 from armland.rotations import Array
+from armland.scenario import Scenario
 
 Ticks = NDArray[np.void] | Mapping[str, NDArray[np.void]]
 """Recorded ticks (k,) of `records.tick_layout`, or the messages of a log by name."""
@@ -20,30 +24,19 @@ class Brief(NamedTuple):
     """A mission as the judge has to know it."""
 
     mission: str
-    start: str
-    """`hinged`, `air` or `cradle`."""
+    start: str  # `hinged`, `air` or `cradle`
     rate_hz: int
     phases: tuple[str, ...]
-    finals: frozenset[str]
-    """Names of the phases that end the mission."""
-    faults: tuple[str, ...]
-    """Names of the faults that the controller can find, `none` first."""
-    limits: dict[str, Any]
-    """By the names of `judge.limits`; a limit that is not here is not judged."""
-    put_down: Array
-    """(3,) m, D: where the pivot is when the UAV stands in the middle of the cradle."""
-    given: Array
-    """(3,) m/s, D: velocity that the UAV keeps after the release."""
-    legs: tuple[Leg, ...]
-    """Of the path that the mission follows; none where it follows none."""
-    judged_as: str
-    """Row of `judgement.KINDS`."""
-    praise: str
-    """What to say where all is well."""
-    criteria: tuple[Criterion, ...]
-    """Largest values of figures, by `judge.figures.NAMES`."""
-    timeouts: dict[str, str]
-    """Phase -> why it can run out of time, and what helps."""
+    finals: frozenset[str]  # Names of the phases that end the mission
+    faults: tuple[str, ...]  # Names of the faults that the controller can find, `none` first
+    limits: dict[str, Any]  # By the names in `judgement.limits_violated`; a limit that is not here is not judged
+    put_down: Array  # (3,) m, D: where the pivot is when the UAV stands in the middle of the cradle
+    given: Array  # (3,) m/s, D: velocity that the UAV keeps after the release
+    legs: tuple[Leg, ...]  # Of the path that the mission follows; none where it follows none
+    judged_as: str  # Row of `judgement.KINDS`
+    praise: str  # What to say where all is well
+    criteria: tuple[Criterion, ...]  # Largest values of figures, by `judge.figures.NAMES`
+    timeouts: dict[str, str]  # Phase -> why it can run out of time, and what helps
 
 
 def brief_of(metadata: Mapping[str, str]) -> Brief:
@@ -80,3 +73,50 @@ def brief_of(metadata: Mapping[str, str]) -> Brief:
 def _leg(data: dict[str, Any]) -> Leg:
     leg = Leg(**data)
     return leg._replace(origin=np.array(leg.origin), target=np.array(leg.target))
+
+
+SOFTWARE = ("mujoco", "numba", "numpy")  # Packages whose versions make a difference to the numbers
+
+LIMITS = ("q_min", "q_max", "qd_max", "tau_max", "torque_rate", "sigma_min", "hinge_max")
+"""Limits of the controller that the judge holds against what happened; infinite ones are none."""
+
+
+def metadata_of(scenario: Scenario, plan: Plan, put_down: Array) -> dict[str, str]:
+    """The metadata of a flight of `plan`; lists of names by commas, everything else that is no text as JSON.
+
+    Args:
+        scenario: what is flown.
+        plan: of it.
+        put_down: (3,) m, D: pivot of a UAV that stands in the cradle's middle; NaN where there is no cradle.
+    """
+    mission, place = plan.mission, scenario.place
+    data: dict[str, Any] = {
+        "limits": {name: plan.told["limit"][name][0] for name in LIMITS if np.isfinite(plan.told["limit"][name]).all()},
+        "legs": [leg._asdict() for leg in plan.legs],
+        "thresholds": plan.thresholds,
+        "put_down": np.nan_to_num(put_down),
+        "given": place.takeoff_velocity_mps if place.fly_on else (0.0, 0.0, 0.0),
+        "criteria": [list(c) for c in mission.criteria],
+        "timeouts": dict(mission.timeouts),
+        "versions": {name: version(name) for name in SOFTWARE},
+    }
+    text = {
+        "mission": mission.name,
+        "title": scenario.title,
+        "experiment": plan.experiment or "",
+        "law": plan.law_name,
+        "seed": str(scenario.run.seed),
+        "start": mission.start,
+        "judged_as": mission.judged_as,
+        "praise": mission.praise,
+        "phases": ",".join(plan.names),
+        "finals": ",".join(p.name for p in plan.phases if p.final),
+        "faults": ",".join(FAULTS),
+        "scenario": scenario.model_dump_json(),
+        "overrides": scenario.overrides,
+    }
+    return {**text, **{name: json.dumps(value, default=_plain) for name, value in data.items()}}
+
+
+def _plain(value: Any) -> Any:
+    return np.asarray(value).tolist()

@@ -12,14 +12,9 @@ from armland.experiments.judge.whereabouts import tilt_deg
 
 Figures = dict[str, Any]
 
-CRADLE_N = 0.2
-"""Force on the rails that counts as a touchdown."""
-
-APART_S = 0.5
-"""Pads that touch again within this time bounce: it is the same capture."""
-
-DROP_S = 2.0
-"""For how long after the release the pivot's lowest point is looked for."""
+CRADLE_N = 0.2  # Force on the rails that counts as a touchdown
+APART_S = 0.5  # Pads that touch again within this time bounce: it is the same capture
+DROP_S = 2.0  # For how long after the release the pivot's lowest point is looked for
 
 
 def capture(ticks: Ticks, brief: Brief) -> Figures:
@@ -98,6 +93,15 @@ MEASURES: dict[str, Callable[[Ticks, Brief], Figures]] = {
     "tracking": tracking,
 }
 """Groups of figures."""
+
+
+def bounds(brief: Brief) -> dict[str, float]:
+    """Largest allowed values of the figures of a flight, by where they stand in its result."""
+    out = {NAMES.get(c.name, c.name): c.bound for c in brief.criteria}
+    if "hinge_max" in brief.limits:
+        out["hinge_force_max_n"] = float(brief.limits["hinge_max"])
+    return out | ({"joint_torque_max_ratio": 1.0} if "tau_max" in brief.limits else {})
+
 
 NAMES = {
     "touchdown_speed": "touchdown.speed_mps",

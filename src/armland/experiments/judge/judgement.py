@@ -1,32 +1,89 @@
 """The judge of all missions: from recorded ticks and the plan's data, by what happened, never by what the controller believed."""
 
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from armland.errors import ConfigurationError
 from armland.experiments.judge.brief import Brief, Ticks
 from armland.experiments.judge.figures import MEASURES, NAMES, Figures
-from armland.experiments.judge.limits import limits_violated
-from armland.experiments.judge.phases import PhaseTime, end_of, last_flown, phase_times
 from armland.experiments.judge.whereabouts import in_words, state_of
 from armland.mission.supervisor.remedies import stopped
-from armland.mission.table.mission import Criterion
+from armland.mission.table.mission import Criterion, Mission
 
-GOAL = "done"
-"""Name of the phase in which a mission has reached its goal."""
+
+@dataclass(frozen=True)
+class PhaseTime:
+    """One phase as flown."""
+
+    name: str
+    start_s: float
+    end_s: float
+
+
+def phase_times(phase: NDArray[np.int64], names: tuple[str, ...], rate: int) -> list[PhaseTime]:
+    """Begin and end of each phase, in the order flown."""
+    edges = [0, *(np.flatnonzero(np.diff(phase)) + 1).tolist(), len(phase)]
+    return [PhaseTime(names[int(phase[a])], a / rate, b / rate) for a, b in pairwise(edges)]
+
+
+def end_of(ticks: Ticks, brief: Brief) -> str:
+    """Name of the last phase."""
+    return brief.phases[int(ticks["mission"]["phase"][-1])]
+
+
+def last_flown(ticks: Ticks, brief: Brief) -> str:
+    """The last phase that was no end: an end that a second fault has led on from is no phase of the mission."""
+    phases = phase_times(ticks["mission"]["phase"], brief.phases, brief.rate_hz)
+    return next((p.name for p in reversed(phases) if p.name not in brief.finals), brief.phases[0])
+
+
+TOUCHED = ("arm_touched_cradle", "arm_touched_floor", "arm_touched_uav")  # What each number of `truth.foul` is about
+
+
+def limits_violated(ticks: Ticks, brief: Brief) -> list[str]:
+    """Names of the limits that were exceeded, of those that `brief.limits` names.
+
+    | limit | unit |
+    |---|---|
+    | `q_min`, `q_max` (n,) | rad |
+    | `qd_max` (n,) | rad/s |
+    | `tau_max` (n,) | N·m |
+    | `torque_rate` | N·m/s |
+    | `sigma_min` | 1 |
+    | `hinge_max` | N |
+    """
+    truth = ticks["truth"]
+    most, least = defaultdict(lambda: np.inf, brief.limits), defaultdict(lambda: -np.inf, brief.limits)
+    tau, q, qd = truth["tau"], ticks["measurement"]["q"], ticks["measurement"]["qd"]
+    exceeded = {
+        "joint_position": (q < least["q_min"]).any() or (q > most["q_max"]).any(),
+        "joint_speed": (np.abs(qd) > most["qd_max"]).any(),
+        "joint_torque": (np.abs(tau) > most["tau_max"] * (1.0 + 1e-9)).any(),
+        # The torque that holds the arm up appears within the first tick, which no limit of the rate can see.
+        "torque_rate": np.abs(np.diff(tau[2:], axis=0)).max(initial=0.0) * brief.rate_hz > most["torque_rate"] * 1.001,
+        "singularity": (ticks["health"]["sigma_min"] < least["sigma_min"]).any(),
+        "hinge_force": np.linalg.norm(truth["hinge_force"], axis=1).max() > most["hinge_max"],
+        **{name: truth["foul"][:, k].any() for k, name in enumerate(TOUCHED)},
+    }
+    return [name for name, is_so in exceeded.items() if is_so]
+
+
+GOAL = "done"  # Name of the phase in which a mission has reached its goal
 
 
 class Kind(NamedTuple):
     """What the judge looks at."""
 
-    state: str
-    """Where the UAV has to be when all is done: `flying`, `held` or `standing`."""
+    state: str  # Where the UAV has to be when all is done: `flying`, `held` or `standing`
     measures: dict[str, str]
     """Groups of `figures.MEASURES`, and what to say where one has none, because the mission never came to that."""
-    criteria: tuple[Criterion, ...] = ()
-    """What every such mission has to keep beside its own criteria."""
+    criteria: tuple[Criterion, ...] = ()  # What every such mission has to keep beside its own criteria
 
 
 KINDS = {
@@ -48,14 +105,11 @@ class Judgement:
     success: bool
     reason: str
     end: str
-    fault: str
-    """The fault that the controller named last."""
-    state: str
-    """Where the UAV really is: `flying`, `held`, `standing` or `lost`."""
+    fault: str  # The fault that the controller named last
+    state: str  # Where the UAV really is: `flying`, `held`, `standing` or `lost`
     phases: list[PhaseTime]
     retries: int
-    figures: dict[str, Figures]
-    """Groups of figures by name, see `figures.MEASURES`."""
+    figures: dict[str, Figures]  # Groups of figures by name, see `figures.MEASURES`
     hinge_force_max_n: float
     joint_torque_max_ratio: float
     limits_violated: list[str]
@@ -65,6 +119,18 @@ class Judgement:
         data = asdict(self)
         groups = data.pop("figures")
         return {**data, **groups}
+
+
+def check_kind(mission: Mission) -> None:
+    """Refuse a mission that no row of `KINDS` judges, before it flies.
+
+    Raises:
+        ConfigurationError: there is none.
+    """
+    if mission.judged_as not in KINDS:
+        raise ConfigurationError(
+            f"mission {mission.name!r}: judged_as = {mission.judged_as!r} is unknown to the judge; known are {', '.join(KINDS)}"
+        )
 
 
 def judge(ticks: Ticks, brief: Brief) -> Judgement:

@@ -9,8 +9,7 @@ from armland.experiments.judge.brief import Ticks
 from armland.mission.reference.path import Leg
 from armland.rotations import Array
 
-MOVED_M = 1e-3
-"""A leg moves along an axis if its end points differ by more than this."""
+MOVED_M = 1e-3  # A leg moves along an axis if its end points differ by more than this
 
 
 @dataclass(frozen=True)

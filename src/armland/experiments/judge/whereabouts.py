@@ -6,20 +6,14 @@ from numpy.typing import NDArray
 from armland.experiments.judge.brief import Brief, Ticks
 from armland.rotations import Array
 
-FLYING_SPEED_MPS = 0.6
-"""A UAV that flies off by itself is not faster, unless the arm has given it more."""
-
-TOPPLED_DEG = 25.0
-"""Tilt beyond which a UAV on the magnet, or in the air, is out of control."""
-
-FALL_MPS = 1.2
-"""Faster than this downwards is a fall: from 7 cm."""
+FLYING_SPEED_MPS = 0.6  # A UAV that flies off by itself is not faster, unless the arm has given it more
+TOPPLED_DEG = 25.0  # Tilt beyond which a UAV on the magnet, or in the air, is out of control
+FALL_MPS = 1.2  # Faster than this downwards is a fall: from 7 cm
 
 STILL_MPS, CARRIED_N, LOW_M = 0.05, 1.0, 0.6
 """Speed of what rests; force on the rails of a UAV that stands; pivot height below which nothing flies."""
 
-ARM_REST_M = 0.002
-"""Displacement of the end effector in the last quarter of a second within which the arm is at rest."""
+ARM_REST_M = 0.002  # Displacement of the end effector in the last quarter of a second within which the arm is at rest
 
 
 def tilt_deg(quat: Array) -> Array:

@@ -18,7 +18,8 @@ recorded (the hinge's friction) and the plant's integrator, which moves the pose
 | κ | `slip` (k, 3) | m/s, world |
 """
 
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,11 +30,10 @@ from armland.errors import LogError
 from armland.experiments.proof.poses import (
     Pose,
     geometry_along,
-    known_poses,
     law_along,
     mean_poses,
+    poses,
     storage_along,
-    true_poses,
 )
 from armland.models.uav import UavParameters
 from armland.rotations import Array
@@ -75,7 +75,6 @@ class Power(NamedTuple):
     """Turns what acts beyond the law into power into V₂, W, (k,)."""
 
     z2_omega: Array  # (k, 3)
-    z2_v: Array  # (k, 3)
     pull: Array  # (k, 3)
     slope: Array  # (k, 3) N, k₃ r_e − m K₁ z₂ᵥ
 
@@ -103,7 +102,7 @@ def attribute(ticks: NDArray[np.void], loop: Loop) -> NDArray[np.void]:
     # The truth of a tick is that of a step before, so the forces in it answer the command of the tick before.
     asked, now, after = ticks[:-2], ticks[1:-1], ticks[2:]
     h, out = 1.0 / loop.rate_hz, np.zeros(len(now), CHANNELS)
-    at, then = true_poses(now), true_poses(after)
+    at, then = poses(now, "truth", "v_cm"), poses(after, "truth", "v_cm")
     mean = mean_poses(at, then)
     out["t"] = now["truth"]["tick"] * h
     out["v2"] = storage_along(at, loop.uav, loop.gains)[:, 0]
@@ -123,13 +122,15 @@ def _feed(
     r_e, thrust = mean.r_d - mean.r, command["thrust"]
     z2_omega, z2_v = z2[:, :3], z2[:, 3:]
     pull = z2_v + np.einsum("kij,kj->ki", R, np.cross(z2_omega, uav.lever))
-    power = Power(z2_omega, z2_v, pull, gains.k3 * r_e - uav.mass * gains.k1[3:] * z2_v)
+    power = Power(z2_omega, pull, gains.k3 * r_e - uav.mass * gains.k1[3:] * z2_v)
     spin = np.einsum("kij,kj->ki", R, np.cross(mean.omega, uav.lever))
     # Torque and force of the law: in the true state; with the pivot's velocity for v; on estimates.
     torque_0, force_0 = law_along(mean, thrust, tau_att, uav, gains, loop.gravity)
     torque_1, force_1 = law_along(mean._replace(v=mean.v + spin), thrust, tau_att, uav, gains, loop.gravity)
     predicted = np.ascontiguousarray(asked["estimate"]["tau_att"])
-    torque_2, force_2 = law_along(known_poses(asked), thrust, predicted, uav, gains, loop.gravity)
+    # The law is fed with the pivot's velocity, as the arm measures it.
+    known = poses(asked, "estimate", "v")
+    torque_2, force_2 = law_along(known, thrust, predicted, uav, gains, loop.gravity)
     out["reference"] = power.of_slip(v_d)
     out["lever"] = power.of_slip(-spin) + power.of_force(force_1 - force_0) + power.of_torque(torque_1 - torque_0)
     out["estimation"] = power.of_force(force_2 - force_1) + power.of_torque(torque_2 - torque_1)
@@ -150,3 +151,36 @@ def _sent(out: NDArray[np.void], power: Power, asked: Array, loop: Loop) -> Arra
     out["effectiveness"] = power.of_torque((loop.effectiveness - 1.0) * limited)
     out["delay"] = power.of_torque(loop.effectiveness * (late - limited))
     return loop.effectiveness * late
+
+
+NOTICEABLE_W = 1e-3
+"""V₂ counts as rising if faster than this: with the arm at rest in E1, the sensors' noise makes less."""
+
+
+def ledger(channels: NDArray[np.void]) -> dict[str, Any]:
+    """Figures of `channels` (k,) of `CHANNELS`: how often and how fast V₂ rises, and what each term feeds it.
+
+    `power_rms_w` is over all ticks, `power_rising_w` the mean over those in which V₂ rises noticeably: there (30), the
+    terms and the remainder add up to the mean rate of rise. `closure` is the remainder's RMS over that of the measured rate.
+    """
+    measured = channels["measured"]
+    rising = measured > NOTICEABLE_W
+    kinds = ("measured", "law", *TERMS, "remainder")
+    rms = {name: float(np.sqrt(np.mean(channels[name] ** 2))) for name in kinds}
+    mean = {name: float(channels[name][rising].mean()) if rising.any() else 0.0 for name in kinds}
+    return {
+        "rising_share": float(rising.mean()),
+        "largest_rise_w": float(measured.max()),
+        "v2_largest_j": float(channels["v2"].max()),
+        "power_rms_w": rms,
+        "power_rising_w": mean,
+        "closure": rms["remainder"] / rms["measured"] if rms["measured"] else 0.0,
+    }
+
+
+def save_channels(channels: NDArray[np.void], path: Path) -> Path:
+    """Write `channels` (k,) of `CHANNELS` as CSV with a header that names units; PlotJuggler opens it. Returns `path`."""
+    units = {"t": "s", "v2": "N·m"}
+    header = ",".join(f"{name} [{units.get(name, 'W')}]" for name in CHANNELS.names or ())
+    np.savetxt(path, channels, fmt="%.9g", delimiter=",", header=header, comments="", encoding="utf-8")
+    return path

@@ -1,6 +1,5 @@
 """The cases in which the proof is run on the subsystem: law, kinematics, random states to start from, and what came of them."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 
 from armland.control.laws.attitude import QuaternionPdGains
 from armland.control.laws.rigid_body import BacksteppingGains, check
+from armland.experiments.paper import Progress, silent
 from armland.experiments.proof.jumps import across
 from armland.experiments.proof.lyapunov_rate import rate_gaps
 from armland.experiments.proof.paths import NEAR_M, SUMMARY, survey_paths
@@ -19,8 +19,7 @@ from armland.plant.noise import stream
 from armland.rotations import Array
 from armland.scenario import Scenario
 
-TOLERANCE = 1e-6
-"""Error that the integrator allows itself per step, relative and in SI units."""
+TOLERANCE = 1e-6  # Error that the integrator allows itself per step, relative and in SI units
 
 HORIZON_S = 10.0
 
@@ -31,25 +30,17 @@ SWING_M, SWING_RAD, PULSATION = 0.15, 0.5, (0.5, 3.0)
 """Largest amplitudes of a moving reference, m and rad, and the range of its pulsations, rad/s."""
 
 
-CHUNK = 250
-"""Paths between two reports of progress."""
-
-Progress = Callable[[str, int, int], None]
-"""Called with (what, done, in all)."""
+CHUNK = 250  # Paths between two reports of progress
 
 
 class Kind(NamedTuple):
     """What makes a case."""
 
     title: str
-    exact: bool
-    """Law (X.1), or the paper's (29)."""
-    lever_moves: bool
-    """True kinematics, or the paper's ṙ = v."""
-    swings: bool
-    """Whether the reference moves."""
-    proven: bool
-    """Whether (30) is said to hold."""
+    exact: bool  # Law (X.1); else law (29) of the paper
+    lever_moves: bool  # True kinematics, or the paper's ṙ = v
+    swings: bool  # Whether the reference moves
+    proven: bool  # Whether (30) is said to hold
 
 
 CASES = {
@@ -99,7 +90,7 @@ class Case:
         }
 
 
-def run_case(kind: Kind, scenario: Scenario, count: int, progress: Progress | None = None) -> Case:
+def run_case(kind: Kind, scenario: Scenario, count: int, progress: Progress = silent) -> Case:
     """Follow `count` paths of a case and check V̇₂ at their starts and along them.
 
     Raises:
@@ -109,8 +100,7 @@ def run_case(kind: Kind, scenario: Scenario, count: int, progress: Progress | No
     paths = np.zeros(count, SUMMARY)
     for k in range(0, count, CHUNK):
         survey_paths(problems[k : k + CHUNK], setting, paths[k : k + CHUNK])
-        if progress is not None:
-            progress(kind.title, min(k + CHUNK, count), count)
+        progress(kind.title, min(k + CHUNK, count), count)
     starts = rate_gaps(problems, np.zeros(count), problems["start"], setting)
     along = rate_gaps(problems, paths["visited_t"], paths["visited"], setting)
     return Case(kind, setting, problems, paths, np.concatenate([starts, along]), *across(problems, setting))

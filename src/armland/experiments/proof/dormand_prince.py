@@ -18,8 +18,7 @@ from numba import njit
 
 from armland.rotations import Array
 
-TIMES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
-"""c: where in the step each stage stands."""
+TIMES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])  # c: where in the step each stage stands
 
 STAGES = np.array(
     [

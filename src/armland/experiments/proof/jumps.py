@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from armland.experiments.proof.subsystem import PROBLEM, Setting, asked, onboard_torque, reference_at, storage
 from armland.rotations import Array, from_rotation_vector, multiply
 
-NARROW = 1e-13
-"""|η_e| at which the two sides of the change of sign are looked at."""
+NARROW = 1e-13  # |η_e| at which the two sides of the change of sign are looked at
 
 
 class Sweep(NamedTuple):

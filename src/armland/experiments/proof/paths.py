@@ -19,7 +19,6 @@ LOG = np.dtype([("t", "f8"), ("v2", "f8"), ("angle", "f8"), ("distance", "f8"), 
 SUMMARY = np.dtype(
     [
         ("v2_start", "f8"),  # N·m
-        ("v2_end", "f8"),  # N·m
         ("end", "f8"),  # s
         ("rise", "f8"),  # largest change of V₂ over a step, relative to V₂ at its start; jumps apart
         ("jumps", "i8"),
@@ -32,11 +31,8 @@ SUMMARY = np.dtype(
 )
 """What is kept of a path."""
 
-SETTLED = 0.01
-"""Part of its initial value at which V₂ counts as settled."""
-
-NEAR_RAD, NEAR_M = np.deg2rad(0.1), 1e-4
-"""At the goal: within this angle and this distance of it."""
+SETTLED = 0.01  # Part of its initial value at which V₂ counts as settled
+NEAR_RAD, NEAR_M = np.deg2rad(0.1), 1e-4  # At the goal: within this angle and this distance of it
 
 ACROSS_S, FIRST_STEP_S, SMALLEST_STEP_S = 1e-12, 1e-3, 1e-15
 MAX_ROWS = 20_000
@@ -124,7 +120,7 @@ def survey_paths(problems: NDArray[np.void], setting: Setting, summaries: NDArra
 def summarise(log: NDArray[np.void], s: Record) -> None:
     """Fill the summary `s` of a path's rows `log` (k,); times between rows as if everything decayed exponentially."""
     last = log.shape[0] - 1
-    s.v2_start, s.v2_end, s.end = log[0].v2, log[last].v2, log[last].t
+    s.v2_start, s.end = log[0].v2, log[last].t
     s.rise, s.jumps, s.jump_rise, s.settled, s.arrived = -1.0, 0, -1.0, np.nan, 0.0
     for k in range(1, last + 1):
         a, b = log[k - 1], log[k]

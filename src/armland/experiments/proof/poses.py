@@ -26,17 +26,8 @@ class Pose(NamedTuple):
     r_d: Array  # (k, 3) m, world
 
 
-def true_poses(ticks: NDArray[np.void]) -> Pose:
-    """The true states of recorded `ticks` (k,) of `tick_layout`; v is that of the centre of mass."""
-    return _poses(ticks, "truth", "v_cm")
-
-
-def known_poses(ticks: NDArray[np.void]) -> Pose:
-    """The states that the law was fed with at recorded `ticks` (k,); v is that of the pivot, as the arm measures it."""
-    return _poses(ticks, "estimate", "v")
-
-
-def _poses(ticks: NDArray[np.void], message: str, speed: str) -> Pose:
+def poses(ticks: NDArray[np.void], message: str, speed: str) -> Pose:
+    """The states at recorded `ticks` (k,) of `tick_layout` by `message`, true or estimated, with its field `speed` as v."""
     state, goal = ticks[message], ticks["reference"]
     fields = (*(state[name] for name in ("quat", "omega", "r", speed)), goal["quat"], goal["r"])
     return Pose(*(np.ascontiguousarray(x) for x in fields))
@@ -62,19 +53,8 @@ def law_along(
     """Δτ_att (k, 3) and F_EE (k, 3) of (29) along `pose`, with thrust (k,) and tau_att (k, 3) under `gravity`. Source: (29)."""
     torque, force = np.empty_like(pose.r), np.empty_like(pose.r)
     for k in range(pose.r.shape[0]):
-        torque[k], force[k] = paper_law(
-            pose.q[k],
-            pose.omega[k],
-            pose.r[k],
-            pose.v[k],
-            pose.q_d[k],
-            pose.r_d[k],
-            thrust[k],
-            tau_att[k],
-            uav,
-            gains,
-            gravity,
-        )
+        q, omega, r, v, q_d, r_d = pose.q[k], pose.omega[k], pose.r[k], pose.v[k], pose.q_d[k], pose.r_d[k]
+        torque[k], force[k] = paper_law(q, omega, r, v, q_d, r_d, thrust[k], tau_att[k], uav, gains, gravity)
     return torque, force
 
 

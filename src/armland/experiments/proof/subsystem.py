@@ -40,30 +40,18 @@ PROBLEM = np.dtype(
 class Setting(NamedTuple):
     """What all paths of one case share."""
 
-    exact: bool
-    """Law (X.1) with its Lyapunov function, or the paper's (29) with (26)."""
-    lever_moves: bool
-    """True kinematics ṙ = v + R(ω × ρ), or the paper's ṙ = v."""
-    uav: UavParameters
-    """The body that moves, and that V₂ speaks of."""
-    inverse: Array
-    """J⁻¹ (3, 3) of that body."""
-    gains: BacksteppingGains
-    """The gains that V₂ speaks of."""
-    told_uav: UavParameters
-    """The body that the law believes in."""
-    told_gains: BacksteppingGains
-    """The gains that the law uses."""
-    onboard: QuaternionPdGains
-    """Gains of the UAV's own attitude controller."""
-    gravity: Gravity
-    """m/s², world."""
-    tolerance: float
-    """Error allowed to a step: this part of each element of y, and this much of its unit."""
-    horizon: float
-    """Longest time that a path is followed, s."""
-    enough: float
-    """V₂ at which a path is followed no further, N·m."""
+    exact: bool  # Law (X.1) with its Lyapunov function; else (29) with (26) of the paper
+    lever_moves: bool  # True kinematics ṙ = v + R(ω × ρ), or the paper's ṙ = v
+    uav: UavParameters  # The body that moves, and that V₂ speaks of
+    inverse: Array  # J⁻¹ (3, 3) of that body
+    gains: BacksteppingGains  # The gains that V₂ speaks of
+    told_uav: UavParameters  # The body that the law believes in
+    told_gains: BacksteppingGains  # The gains that the law uses
+    onboard: QuaternionPdGains  # Gains of the UAV's own attitude controller
+    gravity: Gravity  # m/s², world
+    tolerance: float  # Error allowed to a step: this part of each element of y, and this much of its unit
+    horizon: float  # Longest time that a path is followed, s
+    enough: float  # V₂ at which a path is followed no further, N·m
 
 
 @njit(cache=True)

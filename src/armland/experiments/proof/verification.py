@@ -10,20 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from armland.errors import ConfigurationError
-from armland.experiments.paper import Verdict, fly_all, prepare
-from armland.experiments.proof.attribution import Loop, attribute
+from armland.experiments.paper import Verdict, fly_all, prepare, silent
+from armland.experiments.proof.attribution import Loop, attribute, ledger
 from armland.experiments.proof.cases import CASES, TOLERANCE, Case, Progress, parts, run_case
-from armland.experiments.proof.ledger import ledger
 from armland.scenario import Scenario
 
 SAMPLES, FEWER = 10_000, 10
 """States from which (29) starts under the paper's kinematics; the other cases get that many times fewer."""
 
-RATE_GAP = 1e-9
-"""Largest gap between V̇₂ along the vector field and (30), relative to (30)."""
-
-CLOSURE = 0.05
-"""Largest RMS of what the attribution leaves unexplained, relative to that of V₂'s measured rate."""
+RATE_GAP = 1e-9  # Largest gap between (30) and V̇₂ along the vector field, relative to the former
+CLOSURE = 0.05  # Largest RMS of what the attribution leaves unexplained, relative to that of V₂'s measured rate
 
 
 @dataclass(frozen=True)
@@ -52,9 +48,7 @@ class Proof:
         }
 
 
-def prove(
-    scenario: Scenario, samples: int = SAMPLES, logs: Path | None = None, progress: Progress | None = None
-) -> Proof:
+def prove(scenario: Scenario, samples: int = SAMPLES, logs: Path | None = None, progress: Progress = silent) -> Proof:
     """Run the proof on the subsystem, then look for what is left of it on the demonstrator.
 
     Args:
@@ -90,18 +84,8 @@ def loop_of(scenario: Scenario, experiment: str) -> Loop | None:
     uav, gains, pd = parts(scenario.replaced({"onboard": onboard.model_dump()}))
     link, rate = scenario.link, scenario.run.rate_hz
     disturbance = np.array([*scenario.disturbance.force_n, *scenario.disturbance.torque_nm])
-    limit, uplink = np.array(link.torque_limit_nm), round(1e-3 * link.uplink_delay_ms * rate)
-    return Loop(
-        uav,
-        gains,
-        pd,
-        limit,
-        link.torque_effectiveness,
-        uplink,
-        rate,
-        disturbance,
-        scenario.environment.gravity_mps2,
-    )
+    way = np.array(link.torque_limit_nm), link.torque_effectiveness, round(1e-3 * link.uplink_delay_ms * rate)
+    return Loop(uav, gains, pd, *way, rate, disturbance, scenario.environment.gravity_mps2)
 
 
 def judge(cases: dict[str, Case], ledgers: dict[str, dict[str, Any]]) -> list[Verdict]:
@@ -114,18 +98,18 @@ def judge(cases: dict[str, Case], ledgers: dict[str, dict[str, Any]]) -> list[Ve
         if not case.kind.proven:
             continue
         name, figures = case.kind.title, case.figures()
-        for claim, key, bound in (
-            ("the rate of V₂ is that of (30) (largest relative gap)", "rate_gap_largest", [0.0, RATE_GAP]),
+        for claim, key, low, high in (
+            ("the rate of V₂ is that of (30) (largest relative gap)", "rate_gap_largest", 0.0, RATE_GAP),
             (
                 "V₂ never rises between sign changes of η_e (largest relative change)",
                 "v2_rise_largest",
-                [-1.0, TOLERANCE],
+                -1.0,
+                TOLERANCE,
             ),
-            ("every state arrives (how many do not)", "not_arrived", [0.0, 0.0]),
+            ("every state arrives (how many do not)", "not_arrived", 0.0, 0.0),
         ):
-            value = float(figures[key])
-            verdicts.append(Verdict(f"{name}: {claim}", value, bound, bool(bound[0] <= value <= bound[1])))
+            verdicts.append(Verdict.within(f"{name}: {claim}", float(figures[key]), low, high))
     for name, book in ledgers.items():
         claim = f"{name}: (30) and the broken assumptions explain V₂'s rate (relative RMS of the rest)"
-        verdicts.append(Verdict(claim, book["closure"], [0.0, CLOSURE], bool(book["closure"] <= CLOSURE)))
+        verdicts.append(Verdict.within(claim, book["closure"], 0.0, CLOSURE))
     return verdicts

@@ -1,12 +1,18 @@
-"""Does a speed that the arm gives allow a higher take-off weight? The paper's claim, by theory and by flights in the plant."""
+"""Does a speed that the arm gives allow a higher take-off weight? The paper's claim, by theory and by flights in the plant.
+
+Flights are the real procedure with ideal sensors, arm, magnet and release; each limit is found by bisection. The take-off weight
+is the largest with which the UAV flies off at full command and does not sink: at rest it is the static thrust.
+"""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from armland.experiments.takeoff_weight.flights import HALVINGS, FlownLimit, bisected, flies_off, loaded
+from armland.experiments.episode import fly, quiet
+from armland.experiments.paper import Progress, silent
 from armland.experiments.takeoff_weight.theory import Theory, theory
 from armland.mission.belief import flyer, rotors_of
 from armland.mission.feasibility.launch import Carrying, largest_speed
@@ -14,6 +20,65 @@ from armland.mission.plan import plan
 from armland.models.environment import STANDARD_GRAVITY
 from armland.models.inflow import Rotors, sustained
 from armland.scenario import Scenario
+
+Velocity = tuple[float, float, float]
+
+BRACKET, HALVINGS = 0.008, 5
+"""Half width about theory's limit, over the static thrust, in which flights look for theirs, and how often it is halved."""
+
+DROP_M, SINK_MPS, LATE_S = 0.03, 0.01, 0.5
+"""Below the height of the release, and downwards at the end: what still counts as flying off; how long the end is."""
+
+
+@dataclass(frozen=True)
+class FlownLimit:
+    """Take-off weight over the static thrust, found by flights."""
+
+    name: str
+    speed_mps: float
+    theory: float
+    flown: float
+    half_width: float  # Half of the bracket that is left
+    inside: bool  # Whether flights on both sides of it were seen: one that flew off and one that sank
+
+
+def loaded(scenario: Scenario, velocity: Velocity, weight: float, empty: float) -> Scenario:
+    """The scenario with ideal sensors and a take-off at `velocity`, m/s, of a UAV that weighs `weight` N, and `empty` N unloaded."""
+    place = {"takeoff_velocity_mps": velocity, "fly_on": True}
+    extra = (weight - empty) / STANDARD_GRAVITY
+    return quiet(scenario).replaced({"place": place, "uav": {"extra_mass_kg": extra}})
+
+
+def flies_off(scenario: Scenario) -> bool:
+    """Whether the UAV of a `loaded` scenario, released with all its thrust, neither sinks nor touches the arm again."""
+    episode = fly(scenario, "takeoff", trial=True)
+    return flew_off(episode.ticks, episode.metadata["phases"].split(",").index("release"), scenario.run.rate_hz)
+
+
+def flew_off(ticks: NDArray[np.void], release: int, rate: int) -> bool:
+    """As `flies_off`, of the `ticks` of a flight whose phase number `release` lets go of the UAV."""
+    truth, begun = ticks["truth"], np.flatnonzero(ticks["mission"]["phase"] == release)
+    if not len(begun) or truth["touching"][-1]:
+        return False
+    free = begun[0] + int(np.flatnonzero(truth["touching"][begun[0] :] == 0)[0])
+    height, late = truth["r"][:, 2], truth["v"][-round(LATE_S * rate) :, 2]
+    return bool(height[-1] > height[free] - DROP_M and late.mean() > -SINK_MPS and not truth["foul"][free:, 2].any())
+
+
+def bisected(flies: Callable[[float], bool], about: float, tried: Callable[[int], None]) -> tuple[float, float, bool]:
+    """Where `flies` ends about `about`, a weight over the static thrust, with the half width of the bracket that is left, and whether
+    flights on both sides were seen; `tried` is called with their number after each.
+    """
+    low, high, flew, sank = about - BRACKET, about + BRACKET, False, False
+    for k in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if flies(middle):
+            low, flew = middle, True
+        else:
+            high, sank = middle, True
+        tried(k + 1)
+    return 0.5 * (low + high), 0.5 * (high - low), flew and sank
+
 
 DIRECTIONS = {"forward": (1.0, 0.0, 0.0), "sideways": (0.0, -1.0, 0.0), "upwards": (0.0, 0.0, 1.0)}
 
@@ -25,9 +90,6 @@ FLOWN = (
     ("upwards", "upwards", 0.5),
 )
 """Name, direction and speed, m/s, of the flights."""
-
-Progress = Callable[[str, int, int], None]
-"""Called with what is flown, done and total."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +124,7 @@ class TakeoffWeight:
         return {**data, **self.theory._asdict(), "verdict": self.verdict}
 
 
-def study(scenario: Scenario, flights: bool = True, progress: Progress | None = None) -> TakeoffWeight:
+def study(scenario: Scenario, flights: bool = True, progress: Progress = silent) -> TakeoffWeight:
     """Run the study.
 
     Args:
@@ -76,7 +138,7 @@ def study(scenario: Scenario, flights: bool = True, progress: Progress | None = 
     rotors, drag, speeds = rotors_of(scenario), scenario.uav.drag_nspm, arm_speeds(scenario)
     horizontal = max(speeds["forward"], speeds["sideways"])
     found = theory(rotors, drag, horizontal, min(speeds.values()))
-    flown = _fly_all(scenario, rotors, progress) if flights else []
+    flown = [_flown(scenario, rotors, *row, progress) for row in FLOWN] if flights else []
     return TakeoffWeight(rotors.static, rotors.hover_inflow, speeds, found, flown)
 
 
@@ -89,9 +151,9 @@ def arm_speeds(scenario: Scenario) -> dict[str, float]:
 
 
 def flown_limit(
-    scenario: Scenario, velocity: tuple[float, float, float], about: float, tried: Callable[[], None]
+    scenario: Scenario, velocity: Velocity, about: float, tried: Callable[[int], None]
 ) -> tuple[float, float, bool]:
-    """Largest weight over the static thrust that flies off at `velocity` (3,), m/s, and the rest of `flights.bisected`."""
+    """Largest weight over the static thrust that flies off at `velocity` (3,), m/s, and the rest of `bisected`."""
     static, empty = rotors_of(scenario).static, _empty(scenario)
     return bisected(lambda share: flies_off(loaded(scenario, velocity, share * static, empty)), about, tried)
 
@@ -101,16 +163,10 @@ def _empty(scenario: Scenario) -> float:
     return flyer(scenario.replaced({"uav": {"extra_mass_kg": 0.0}}).believed()).weight
 
 
-def _fly_all(scenario: Scenario, rotors: Rotors, progress: Progress | None) -> list[FlownLimit]:
-    out: list[FlownLimit] = []
-    for name, direction, speed in FLOWN:
-        x, y, z = (speed * c for c in DIRECTIONS[direction])
-        about = sustained(rotors, speed if direction != "upwards" else 0.0, scenario.uav.drag_nspm) / rotors.static
-        done = iter(range(1, HALVINGS + 1))
-
-        def tried(name: str = name, done: Any = done) -> None:
-            if progress is not None:
-                progress(name, next(done), HALVINGS)
-
-        out.append(FlownLimit(name, speed, about, *flown_limit(scenario, (x, y, z), about, tried)))
-    return out
+def _flown(
+    scenario: Scenario, rotors: Rotors, name: str, direction: str, speed: float, progress: Progress
+) -> FlownLimit:
+    x, y, z = (speed * c for c in DIRECTIONS[direction])
+    about = sustained(rotors, speed if direction != "upwards" else 0.0, scenario.uav.drag_nspm) / rotors.static
+    limit = flown_limit(scenario, (x, y, z), about, lambda done: progress(name, done, HALVINGS))
+    return FlownLimit(name, speed, about, *limit)

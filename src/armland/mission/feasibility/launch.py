@@ -4,13 +4,13 @@ The path leads through `place.launch_m` along the velocity. The gentlest acceler
 begin of the path keeps the whole of it, with the longest wait for the release, within reach, ranges, joint speeds and torques.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from armland.errors import ConfigurationError
-from armland.mission.missions.launch import CURRENT_GONE_S
+from armland.mission.missions.takeoff import CURRENT_GONE_S
 from armland.mission.reference.launch import leave, run_up
 from armland.mission.reference.septic import PEAK
 from armland.mission.table.phases import Phase
@@ -52,8 +52,6 @@ class Launch(NamedTuple):
     run_up_s: float
     leave_s: float
     acceleration: float  # m/s², largest
-    speed_ratio: float  # largest joint speed over its limit
-    torque_ratio: float  # largest joint torque over its limit
 
     @property
     def leaving_s(self) -> float:
@@ -113,17 +111,17 @@ def largest_speed(carrying: Carrying, q: Array, direction: Array, below: float =
 def _search(carrying: Carrying, q: Array, velocity: Array) -> Launch | _Refusal:
     speed, best = float(np.linalg.norm(velocity)), _Refusal(np.inf, "no path was tried")
     for acceleration in ACCELERATIONS:
-        run_up_s = max(PEAK * speed / acceleration, SHORTEST_S)
         for share in SHARES if speed > 0.0 else SHARES[:1]:
-            found = _try(carrying, q, velocity, run_up_s, share)
+            found = _try(carrying, q, velocity, acceleration, share)
             if isinstance(found, Launch):
-                return found._replace(acceleration=acceleration)
+                return found
             best = min(best, found, key=lambda refusal: refusal.measure)
     return best
 
 
-def _try(carrying: Carrying, q: Array, velocity: Array, run_up_s: float, share: float) -> Launch | _Refusal:
+def _try(carrying: Carrying, q: Array, velocity: Array, acceleration: float, share: float) -> Launch | _Refusal:
     arm, scenario = carrying.arm, carrying.scenario
+    run_up_s = max(PEAK * float(np.linalg.norm(velocity)) / acceleration, SHORTEST_S)
     times = np.linspace(0.0, run_up_s + WAIT_S + CURRENT_GONE_S + max(0.5 * LEAVE_S + run_up_s, LEAVE_S), POINTS)
     along, down = displacement(times, run_up_s, scenario.place.withdraw_m)
     start = carrying.through - share * along[-1] * velocity
@@ -138,10 +136,7 @@ def _try(carrying: Carrying, q: Array, velocity: Array, run_up_s: float, share: 
     gravity = np.array(scenario.environment.gravity_mps2)
     torques = _torques(arm, qs, times, points, carrying.mass * held, gravity)
     refusal = refusal or _beyond(arm, torques, TORQUE_SHARE * arm.tau_max, "need", "N·m")
-    if refusal is not None:
-        return refusal
-    ratio = float((torques / arm.tau_max).max())
-    return Launch(velocity, start, run_up_s, LEAVE_S, 0.0, float((speeds / carrying.speeds).max()), ratio)
+    return refusal or Launch(velocity, start, run_up_s, LEAVE_S, acceleration)
 
 
 def _beyond(arm: ArmModel, found: Array, bound: Array, verb: str, unit: str) -> _Refusal | None:
@@ -228,14 +223,11 @@ def _torques(arm: ArmModel, qs: Array, times: Array, points: Array, masses: NDAr
 
 def timed(phases: tuple[Phase, ...], launch: Launch) -> tuple[Phase, ...]:
     """The phases with the plan's durations."""
-    out = []
-    for p in phases:
-        if p.name == "launch":
-            p = p._replace(duration_s=launch.run_up_s, timeout_s=launch.run_up_s + WAIT_S)
-        elif p.name == "leave":
-            p = p._replace(duration_s=launch.leaving_s, timeout_s=launch.leaving_s + 1.0)
-        out.append(p)
-    return tuple(out)
+    known: dict[str, dict[str, Any]] = {
+        "launch": {"duration_s": launch.run_up_s, "timeout_s": launch.run_up_s + WAIT_S},
+        "leave": {"duration_s": launch.leaving_s, "timeout_s": launch.leaving_s + 1.0},
+    }
+    return tuple(p._replace(**known.get(p.name, {})) for p in phases)
 
 
 def _text(v: Array) -> str:

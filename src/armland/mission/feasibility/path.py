@@ -27,7 +27,6 @@ class Workplace(NamedTuple):
     R_d: Array  # (3, 3) end effector's orientation
     legs: list[Leg]
     path: Array  # (ticks, 9)
-    joint_margin: float  # rad, the smallest along the path
 
 
 def survey_path(arm: ArmModel, scenario: Scenario) -> Workplace:
@@ -56,8 +55,8 @@ def _workplace(scenario: Scenario, arm: ArmModel, home: Array) -> Workplace:
     path = legs(path_of(scenario), arm.position.copy(), run.settle_s, run.tail_s)
     table = sample(path, run.rate_hz)
     every = max(run.rate_hz // CHECKED_HZ, 1)
-    margin = check_path(arm, home, R_d, table[::every, :3], np.arange(0, len(table), every) / run.rate_hz)
-    return Workplace(home, R_d, path, table, margin)
+    check_path(arm, home, R_d, table[::every, :3], np.arange(0, len(table), every) / run.rate_hz)
+    return Workplace(home, R_d, path, table)
 
 
 def _near(scenario: Scenario, arm: ArmModel) -> Array | None:

@@ -1,11 +1,10 @@
-"""The arm's path through a mission of way points: the pose from which it begins, and whether the arm can go there and carry."""
+"""Where a mission of way points takes the arm: the pose from which it begins, whether it can go there, carry, and follow the UAV."""
 
 from itertools import pairwise
 
 import numpy as np
 
 from armland.errors import ConfigurationError, WorkspaceError
-from armland.mission.feasibility.tracking import check_tracking, out_of_reach
 from armland.mission.table.mission import At, Mission
 from armland.mission.table.phases import Phase
 from armland.models.arm import ArmModel
@@ -15,6 +14,9 @@ from armland.scenario import Scenario
 
 BRANCHES, MARGIN_RAD = 16, 0.2
 """Where no home is given: poses that are tried at most, and the distance to all joints' ends that is good enough."""
+
+STEPS = 4
+"""Points from the catch to each end of the box about it in which the arm follows the UAV."""
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -49,7 +51,7 @@ def survey(arm: ArmModel, scenario: Scenario, mission: Mission, weight: float) -
         # From the pose that is known the arm is led to the first way point: no other branch of the kinematics comes in.
         q = lead(arm, start, points[0], 25)
         try:
-            margin = check_path(arm, q, UPRIGHT, fine, np.arange(len(fine), dtype=float))
+            margin = check_path(arm, q, UPRIGHT, fine)
         except WorkspaceError as e:
             refusal = e
             continue
@@ -59,12 +61,12 @@ def survey(arm: ArmModel, scenario: Scenario, mission: Mission, weight: float) -
             break
     if widest < 0.0:
         raise WorkspaceError(
-            f"the arm cannot follow the {mission.name}'s path: {out_of_reach(refusal)}; the path is given by place.catch_m = "
+            f"the arm cannot follow the {mission.name}'s path: {refusal}; the path is given by place.catch_m = "
             f"{scenario.place.catch_m}, put_down_m = {scenario.place.put_down_m}, wait_below_m, above_m and withdraw_m"
         ) from refusal
     _check_torque(arm, best, fine, weight)
     if mission.start == "air":
-        check_tracking(arm, best, UPRIGHT, scenario)
+        check_tracking(arm, best, scenario)
     return best
 
 
@@ -88,3 +90,43 @@ def _check_torque(arm: ArmModel, q: Array, points: Array, weight: float) -> None
                 f"joint {arm.joint_names[worst]} would need {needed[worst]:.0f} N·m to carry a UAV of {weight:.1f} N at "
                 f"({', '.join(f'{x:.2f}' for x in place)}) m; 0.9 of its limit is {0.9 * arm.tau_max[worst]:.0f} N·m"
             )
+
+
+def tracked_points(scenario: Scenario) -> Array:
+    """End effector positions (k, 3) m from the catch to the ends of the box about it, and back.
+
+    The arm approaches once the UAV is within `bounds.uav_error_m` of its station, and follows it there from `place.standoff_m`
+    below the plate up to the plate.
+    """
+    catch, error = np.array(scenario.place.catch_m), scenario.bounds.uav_error_m
+    out = []
+    for axis in np.eye(3):
+        for sign in (-1.0, 1.0):
+            end = catch + sign * error * axis
+            if axis[2] and sign < 0.0:
+                end[2] -= scenario.place.standoff_m
+            there = np.linspace(catch, end, STEPS)
+            out += [there, there[::-1]]
+    return np.concatenate(out)
+
+
+def check_tracking(arm: ArmModel, q: Array, scenario: Scenario) -> None:
+    """Refuse a catch about which the arm could not follow the UAV.
+
+    Args:
+        arm: the arm model (its state is overwritten).
+        q: joint positions (n,) rad with the end effector below the catch, where the arm waits.
+        scenario: believed.
+
+    Raises:
+        WorkspaceError: names the point, the distance that remains and the joint at its limit.
+    """
+    points, place = tracked_points(scenario), scenario.place
+    rise = np.linspace(np.array(place.catch_m) - place.wait_below_m * UP, points[0], 8)
+    try:
+        check_path(arm, q, UPRIGHT, np.concatenate([rise, points]))
+    except WorkspaceError as refusal:
+        raise WorkspaceError(
+            f"the arm must follow the UAV within bounds.uav_error_m = {scenario.bounds.uav_error_m:g} m about "
+            f"place.catch_m = {place.catch_m}: {refusal}; move the catch or lower the bound"
+        ) from refusal

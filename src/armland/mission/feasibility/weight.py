@@ -3,9 +3,10 @@
 import numpy as np
 
 from armland.errors import ConfigurationError
-from armland.mission.belief import ROTORS, Flyer, rotors_of
-from armland.mission.missions.launch import gives_speed
+from armland.mission.belief import Flyer, rotors_of
+from armland.mission.missions.takeoff import gives_speed
 from armland.models.inflow import sustained
+from armland.models.parameters import ROTORS
 from armland.scenario import Scenario
 
 HOVER_SHARE = 0.9

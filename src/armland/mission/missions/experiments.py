@@ -4,11 +4,9 @@ from armland.errors import ConfigurationError
 from armland.mission.missions.keys import HINGED, SHARED
 from armland.mission.supervisor.ends import HINGED_FINALS
 from armland.mission.table.mission import Criterion, Mission
-from armland.mission.table.phases import Condition, Guard, Phase
+from armland.mission.table.phases import Phase
 from armland.scenario import Scenario
 from armland.scenario.mission import Trajectory
-
-C, G = Condition, Guard
 
 GRACE_S = 1.0
 """By how much a phase's time-out is longer than the phase."""
@@ -39,26 +37,14 @@ def _times(scenario: Scenario) -> tuple[float, float, float]:
 
 
 def _phases(scenario: Scenario) -> tuple[Phase, ...]:
-    names = ("settle", "follow", "rest")
-    targets = dict(zip(names, ("follow", "rest", "done"), strict=True))
-    out = [
-        Phase(
-            name,
-            kind="hinge",
-            arm="follow",
-            uav="hinged",
-            link="hinged",
-            held=True,
-            observe=True,
-            sight=False,
-            load="impact",
-            duration_s=duration,
-            timeout_s=duration + GRACE_S,
-            on_timeout=targets[name],
-            guards=(G(targets[name], (C("elapsed", ">", f"{name}_s"),)),),
+    out = []
+    targets = {"settle": "follow", "follow": "rest", "rest": "done"}
+    for (name, target), duration in zip(targets.items(), _times(scenario), strict=True):
+        held = Phase(
+            name, "follow", "hinged", "hinge", link="hinged", held=True, observe=True, sight=False, load="impact"
         )
-        for name, duration in zip(names, _times(scenario), strict=True)
-    ]
+        timed = held._replace(duration_s=duration, timeout_s=duration + GRACE_S, on_timeout=target)
+        out.append(timed.to(target, f"elapsed > {name}_s"))
     return (*out, *HINGED_FINALS)
 
 

@@ -1,199 +1,71 @@
 """The landing: the UAV comes to its station, the arm catches it, carries it to the cradle, puts it down and lets go."""
 
-from armland.mission.missions.keys import GEAR, HELD, SHARED
+from typing import Any
+
+from armland.mission.missions.keys import GEAR, ON_MAGNET, SHARED
 from armland.mission.supervisor.ends import FINALS
 from armland.mission.table.mission import At, Criterion, Mission
-from armland.mission.table.phases import Condition, Guard, Phase
+from armland.mission.table.phases import Phase
 
-C, G = Condition, Guard
+READY = "magnet_ready > half, bias_known > half, uav_seen > half"
+"""What a self-test waits for."""
+
+ARRIVED = "progress > almost_one, arm_error < arm_error_m"
+
+TOUCHING: dict[str, Any] = {"kind": "touch", "load": "impact", "magnet": "on", "timeout_s": 1.5, "on_timeout": "miss"}
+"""The magnet works on the plate."""
+
+HELD: dict[str, Any] = {"kind": "held", "magnet": "on", "held": True, "link": "held", "on_timeout": "holding"}
+"""The UAV hangs on the arm."""
+
+CARRIED: dict[str, Any] = {**HELD, "uav": "ramp", "share": "carry"}
+"""So it does, and its rotors carry their share."""
+
+RESTING: dict[str, Any] = {"kind": "cradle", "arm": "yield", "on_timeout": "secured"}
+"""The UAV stands on the cradle, the arm gives way."""
 
 PHASES = (
-    Phase(
-        "self_test",
-        kind="ground",
-        arm="hold",
-        uav="autonomous",
-        magnet="test",
-        free=True,
-        on_timeout="refused",
-        guards=(
-            G("guide", (C("magnet_ready", ">", "half"), C("bias_known", ">", "half"), C("uav_seen", ">", "half")), 0.2),
-        ),
+    Phase("self_test", kind="ground", arm="hold", uav="autonomous", magnet="test", free=True, on_timeout="refused").to(
+        "guide", READY, 0.2
     ),
-    Phase(
-        "guide",
-        arm="hold",
-        uav="station",
-        free=True,
-        timeout_s=12.0,
-        guards=(G("approach", (C("uav_error", "<", "uav_error_m"), C("uav_speed", "<", "uav_speed_mps")), 0.2),),
+    Phase("guide", arm="hold", uav="station", free=True, timeout_s=12.0).to(
+        "approach", "uav_error < uav_error_m, uav_speed < uav_speed_mps", 0.2
     ),
-    Phase(
-        "approach",
-        arm="join",
-        uav="station",
-        free=True,
-        duration_s=1.5,
-        timeout_s=4.0,
-        on_timeout="miss",
-        guards=(G("align", (C("progress", ">", "almost_one"),)),),
+    Phase("approach", arm="join", uav="station", free=True, duration_s=1.5, timeout_s=4.0, on_timeout="miss").to(
+        "align", "progress > almost_one"
     ),
-    Phase(
-        "align",
-        arm="track",
-        uav="station",
-        timeout_s=8.0,
-        on_timeout="miss",
-        guards=(
-            G(
-                "close",
-                (
-                    C("offset", "<", "align_offset_m"),
-                    C("relative_speed", "<", "align_speed_mps"),
-                    C("tilt", "<", "align_tilt_deg"),
-                    C("uav_seen", ">", "half"),
-                ),
-                0.1,
-            ),
-        ),
-    ),
-    Phase(
+    Phase("align", arm="track", uav="station", timeout_s=8.0, on_timeout="miss").to(
         "close",
-        load="impact",
-        kind="touch",
-        arm="close",
-        uav="station",
-        magnet="on",
-        duration_s=1.0,
-        timeout_s=1.5,
-        on_timeout="miss",
-        guards=(
-            G("capture", (C("contact", ">", "half"),)),
-            G("miss", (C("offset", ">", "lost_offset_m"),), 0.02),
-            G("miss", (C("uav_seen", "<", "half"),), 0.2),
-        ),
+        "offset < align_offset_m, relative_speed < align_speed_mps, tilt < align_tilt_deg, uav_seen > half",
+        0.1,
     ),
-    Phase(
-        "capture",
-        load="impact",
-        kind="touch",
-        arm="hold",
-        uav="ramp",
-        share="test",
-        magnet="on",
-        held=True,
-        # Until the arm carries, a UAV without link flies by itself.
-        link="caught",
-        timeout_s=1.5,
-        on_timeout="miss",
-        guards=(
-            G("miss", (C("gap", ">", "let_go_m"),), 0.02),
-            G("hand_over", (C("pull", ">", "pull_seen_n"), C("elapsed", ">", "settled_s")), 0.1),
-        ),
+    Phase("close", **TOUCHING, arm="close", uav="station", duration_s=1.0)
+    .to("capture", "contact > half")
+    .to("miss", "offset > lost_offset_m", 0.02)
+    .to("miss", "uav_seen < half", 0.2),
+    # Until the arm carries, a UAV without link flies by itself.
+    Phase("capture", **TOUCHING, arm="hold", uav="ramp", share="test", held=True, link="caught")
+    .to("miss", "gap > let_go_m", 0.02)
+    .to("hand_over", "pull > pull_seen_n, elapsed > settled_s", 0.1),
+    Phase("hand_over", **CARRIED, arm="hold", observe=True, timeout_s=6.0).to(
+        "carry", "thrust_left < thrust_left_n, arm_share > share_carried", 0.1
     ),
-    Phase(
-        "hand_over",
-        kind="held",
-        arm="hold",
-        uav="ramp",
-        share="carry",
-        magnet="on",
-        held=True,
-        link="held",
-        observe=True,
-        timeout_s=6.0,
-        on_timeout="holding",
-        guards=(G("carry", (C("thrust_left", "<", "thrust_left_n"), C("arm_share", ">", "share_carried")), 0.1),),
+    Phase("carry", **CARRIED, arm="move", observe=True, duration_s=2.5, timeout_s=6.0).to("set_down", ARRIVED, 0.1),
+    Phase("set_down", **CARRIED, load="impact", arm="move", duration_s=2.0, timeout_s=4.0).to(
+        "unload", "ground_share > share_touched, progress > half", 0.02
     ),
-    Phase(
-        "carry",
-        kind="held",
-        arm="move",
-        uav="ramp",
-        share="carry",
-        magnet="on",
-        held=True,
-        link="held",
-        observe=True,
-        duration_s=2.5,
-        timeout_s=6.0,
-        on_timeout="holding",
-        guards=(G("set_down", (C("progress", ">", "almost_one"), C("arm_error", "<", "arm_error_m")), 0.1),),
+    Phase("unload", **RESTING, load="impact", uav="ramp", share="none", link="landed", magnet="on", timeout_s=8.0).to(
+        "release", "ground_share > share_resting, hinge_force < force_free_n, rotors < rotors_off_n", 0.2
     ),
-    Phase(
-        "set_down",
-        load="impact",
-        kind="held",
-        arm="move",
-        uav="ramp",
-        share="carry",
-        magnet="on",
-        held=True,
-        link="held",
-        duration_s=2.0,
-        timeout_s=4.0,
-        on_timeout="holding",
-        guards=(G("unload", (C("ground_share", ">", "share_touched"), C("progress", ">", "half")), 0.02),),
+    Phase("release", **RESTING, uav="off", timeout_s=3.0).to(
+        "withdraw", "elapsed > coil_off_s, hinge_force < force_free_n", 0.1
     ),
-    Phase(
-        "unload",
-        load="impact",
-        kind="cradle",
-        link="landed",
-        arm="yield",
-        uav="ramp",
-        share="none",
-        magnet="on",
-        timeout_s=8.0,
-        on_timeout="secured",
-        guards=(
-            G(
-                "release",
-                (
-                    C("ground_share", ">", "share_resting"),
-                    C("hinge_force", "<", "force_free_n"),
-                    C("rotors", "<", "rotors_off_n"),
-                ),
-                0.2,
-            ),
-        ),
+    Phase("withdraw", **{**RESTING, "arm": "back_off"}, uav="off", duration_s=1.2, timeout_s=4.0).to(
+        "done", "progress > almost_one, retreat > retreat_m, contact < half", 0.1
     ),
-    Phase(
-        "release",
-        kind="cradle",
-        arm="yield",
-        uav="off",
-        timeout_s=3.0,
-        on_timeout="secured",
-        guards=(G("withdraw", (C("elapsed", ">", "coil_off_s"), C("hinge_force", "<", "force_free_n")), 0.1),),
-    ),
-    Phase(
-        "withdraw",
-        kind="cradle",
-        arm="back_off",
-        uav="off",
-        duration_s=1.2,
-        timeout_s=4.0,
-        on_timeout="secured",
-        guards=(
-            G(
-                "done",
-                (C("progress", ">", "almost_one"), C("retreat", ">", "retreat_m"), C("contact", "<", "half")),
-                0.1,
-            ),
-        ),
-    ),
-    Phase(
-        "miss",
-        arm="back_off",
-        uav="station",
-        duration_s=0.8,
-        timeout_s=3.0,
-        guards=(
-            G("abort", (C("retries", ">", "retries_allowed"),)),
-            G("guide", (C("progress", ">", "almost_one"), C("uav_seen", ">", "half")), 0.1),
-        ),
-    ),
+    Phase("miss", arm="back_off", uav="station", duration_s=0.8, timeout_s=3.0)
+    .to("abort", "retries > retries_allowed")
+    .to("guide", "progress > almost_one, uav_seen > half", 0.1),
     *FINALS,
 )
 
@@ -208,7 +80,7 @@ LANDING = Mission(
     summary="catch a flying UAV and put it down on the cradle",
     start="air",
     phases=lambda _: PHASES,
-    uses=(*SHARED, *GEAR, *HELD),
+    uses=(*SHARED, *GEAR, *ON_MAGNET),
     points=lambda _: (
         At("catch_m", -1.0, "wait_below_m"),
         At("catch_m"),

@@ -1,11 +1,97 @@
-"""The take-off, the landing backwards: the arm grips the UAV on the cradle, lifts it to its station and lets it fly."""
+"""The take-off, the landing backwards: the arm grips the UAV on the cradle, lifts it to its station and lets it fly.
 
-from armland.mission.missions.keys import GEAR, HELD, LAUNCH, SHARED
-from armland.mission.missions.launch import gives_speed, launch_phases, launch_thresholds
-from armland.mission.missions.lifting import PHASES
+With a speed that the UAV is given it is the same up to the hand-over; then come run-up, release in motion, and leaving.
+"""
+
+from typing import Any
+
+from armland.mission.missions.keys import GEAR, LAUNCH, ON_MAGNET, SHARED
+from armland.mission.missions.landing import ARRIVED, CARRIED, HELD, READY
+from armland.mission.supervisor.ends import TAKEOFF_FINALS
 from armland.mission.table.mission import At, Criterion, Mission
 from armland.mission.table.phases import Phase
 from armland.scenario import Scenario
+
+CURRENT_GONE_S = 0.08
+"""Time after which a magnet that was switched off no longer holds: four of its time constants."""
+
+FLOWN_S = 3.0
+"""Time for which a UAV that was given a speed is waited for after the arm has left it."""
+
+GRIPPING: dict[str, Any] = {"kind": "grip", "load": "impact", "magnet": "on", "on_timeout": "secured"}
+"""The magnet works on the plate of a UAV that stands on the cradle."""
+
+CARRY_UP = Phase("carry_up", **CARRIED, arm="move", observe=True, duration_s=2.5, timeout_s=6.0)
+
+# It flies by itself should the link be lost: it must know so before the magnet opens.
+HAND_BACK = Phase("hand_back", **{**HELD, "link": "caught"}, arm="hold", uav="balance", observe=True, timeout_s=8.0)
+LEVEL = "uav_seen > half, tilt < level_tilt_deg"
+
+BEFORE = (
+    Phase("self_test", kind="ground", arm="hold", uav="off", magnet="test", free=True, on_timeout="refused").to(
+        "reach", READY, 0.2
+    ),
+    Phase(
+        "reach", kind="ground", arm="move", uav="off", free=True, duration_s=2.0, timeout_s=4.0, on_timeout="refused"
+    ).to("touch", ARRIVED),
+    Phase("touch", **GRIPPING, arm="move", uav="off", duration_s=1.5, timeout_s=3.0).to(
+        "grip", "contact > half, progress > almost_one", 0.05
+    ),
+    Phase("grip", **GRIPPING, arm="yield", uav="off", timeout_s=2.0).to(
+        "spin_up", "elapsed > settled_s, hinge_force < force_free_n", 0.1
+    ),
+    Phase("spin_up", **GRIPPING, link="landed", arm="yield", uav="ramp", share="carry", timeout_s=5.0).to(
+        "lift", "thrust_left < thrust_left_n, uav_seen > half", 0.2
+    ),
+    Phase("lift", **CARRIED, arm="move", duration_s=1.5, timeout_s=4.0).to(
+        "carry_up", "progress > almost_one, arm_share > share_carried", 0.1
+    ),
+)
+"""Up to where the UAV hangs on the arm."""
+
+PHASES = (
+    *BEFORE,
+    CARRY_UP.to("hand_back", ARRIVED, 0.1),
+    HAND_BACK.to("release", f"hinge_force < force_balanced_n, {LEVEL}", 0.3),
+    Phase("release", kind="touch", arm="hold", uav="level", timeout_s=1.0, on_timeout="clear").to(
+        "clear", "elapsed > coil_off_s"
+    ),
+    Phase("clear", arm="back_off", uav="station", duration_s=0.8, timeout_s=12.0).to(
+        "done", "progress > almost_one, uav_seen > half, uav_error < uav_error_m, uav_speed < uav_speed_mps", 0.5
+    ),
+    *TAKEOFF_FINALS,
+)
+
+
+def gives_speed(scenario: Scenario) -> bool:
+    """Whether the scenario's take-off is the one with a run-up."""
+    return scenario.place.fly_on or any(scenario.place.takeoff_velocity_mps)
+
+
+def launch_phases(fly_on: bool) -> tuple[Phase, ...]:
+    """Phases of a take-off with a run-up; `fly_on`: the UAV keeps its speed with all its thrust, since it may not be able to hover."""
+    # What the arm still carries the UAV loses at the release, in the arm's way; where the rotors give all they have, the hinge
+    # keeps what they cannot carry.
+    free = "force_balanced_n" if fly_on else "force_light_n"
+    after = "cruise" if fly_on else "autonomous"
+    return (
+        *BEFORE,
+        CARRY_UP.to("bring", ARRIVED, 0.1),
+        # Upwards first: beside the rails, not between them, there is room to run.
+        CARRY_UP._replace(name="bring").to("hand_back", ARRIVED, 0.1),
+        HAND_BACK.to("launch", f"hinge_force < {free}, {LEVEL}", 0.3),
+        Phase("launch", **HELD, arm="launch", uav="run_up").to(
+            "release", "progress > almost_one, hinge_force < force_launched_n", 0.03
+        ),
+        # It goes on as fast as before while the magnet's current dies.
+        Phase("release", kind="touch", arm="launch", uav="cruise", timeout_s=1.0, on_timeout="leave").to(
+            "leave", "elapsed > current_gone_s"
+        ),
+        Phase("leave", arm="leave", uav="cruise").to("clear", "progress > almost_one"),
+        # The UAV has left: it flies by itself.
+        Phase("clear", sight=False, arm="hold", uav=after, on_timeout="done").to("done", "elapsed > flown_s"),
+        *(p._replace(kind="end", uav=after) if p.name == "done" else p for p in TAKEOFF_FINALS),
+    )
 
 
 def _phases(scenario: Scenario) -> tuple[Phase, ...]:
@@ -32,10 +118,10 @@ TAKEOFF = Mission(
     summary="lift a UAV from the cradle and let it fly, with a speed if wanted",
     start="cradle",
     phases=_phases,
-    uses=(*SHARED, *GEAR, *HELD, *LAUNCH),
+    uses=(*SHARED, *GEAR, *ON_MAGNET, *LAUNCH),
     points=_points,
     targets=TARGETS,
-    thresholds=lambda _: launch_thresholds(),
+    thresholds=lambda _: {"current_gone_s": CURRENT_GONE_S, "flown_s": FLOWN_S},
     timeouts={
         "self_test": "magnet, bias of the force sensor or sight of the UAV were not ready: check magnet and camera",
         "reach": "the arm did not arrive below the UAV: look for what is in its way",

@@ -5,10 +5,11 @@
 | x, ẋ, u | `kept.sway`, `.sway_v`, `.sway_a` (2,): pivot's displacement from where balancing began, as commanded | m, m/s, m/s² |
 | φ, φ̇, φ̈ | `kept.lean`, `.lean_v`, `.lean_a` (3,): rotation vector of the end effector from upright | rad, rad/s, rad/s² |
 
-The pivot moves by (B.3) of `control.balance`, and the arm follows the path that this makes as it follows any other reference,
-with acceleration and load fed forward: friction in its joints then does not come into the balance. The tool leans towards
-where the pivot goes, φ = c x/L across x, L from the wrist to the pivot, c = `swing` the wrist's share of the displacement: the arm
-behind the wrist, which may stand between the cradle's rails, moves by little, and no joint has to be fast for all.
+The pivot moves by (B.3) of `control.laws.balance`. The arm follows that trajectory as it follows any other reference, with
+acceleration and load fed forward, so friction in its joints does not disturb the balance. The tool leans in the direction of the
+displacement: φ = c x/L about the axis across x, with L from the wrist to the pivot and c = `swing` the wrist's share of the
+displacement. So the arm behind the wrist, which may stand between the cradle's rails, moves little, and the speed is divided among
+the joints.
 """
 
 from functools import lru_cache

@@ -5,8 +5,9 @@
 | s(u), S(u) | septic from 0 to 1 and its integral | 1 |
 | V | `launch`, velocity given to the UAV | m/s |
 
-Run-up: v = V s(t/T), then V. Leave: straight down by the depth within `leave_s` while the arm goes along with the UAV; from half
-of that time on it slows down, over T. By then it has gone half of its displacement down, faster than it falls behind.
+Run-up: the velocity is V s(t/T), and V from then on. Leave: within `leave_s` the arm moves down by the depth. Until half of that time
+it keeps the UAV's velocity V; then it slows down over T. By then it has covered half of the depth, so it clears the UAV
+before it falls behind.
 """
 
 from numba import njit

@@ -7,7 +7,8 @@
 | s(u) | septic from 0 to 1 | 1 |
 | p | `kept.p` (3,): the plate's pivot, smoothed by `track` | m, deck |
 
-What speed there was runs out over `coast` s, so that no reference jumps: r₀ + v₀ T (1 − e^(−t/T)).
+No reference jumps: a velocity v₀ at the beginning of a phase decays with the time constant T = `coast`, s, as
+r₀ + v₀ T (1 − e^(−t/T)).
 """
 
 import numpy as np
@@ -62,9 +63,10 @@ def move(mode: int, elapsed: float, duration: float, phase: int, e: Record, p: R
 
 @njit(cache=True)
 def begin(mode: int, before: int, switched: bool, e: Record, s: Record) -> None:
-    """Remember where a phase's reference begins: where the last one was, or where the arm is, at rest.
+    """Set r₀ and v₀, from which a phase's reference begins.
 
-    The latter where the arm begins to give way and where the law changes: the new one then begins without a force.
+    In general they continue the last reference. Where the law changes they are the arm's position and velocity, so that the new law
+    begins without a force. Where the arm begins to give way they are its position, at rest.
 
     Args:
         mode: index into `ARM` of the phase that begins.

@@ -15,7 +15,7 @@ from armland.records import Record
 
 @njit(cache=True)
 def track(e: Record, p: Record, s: Record) -> None:
-    """One tick. A plate that nobody vouches for is not followed: the reference comes to rest.
+    """One tick. Where the estimate of the plate is not valid, the smoothed plate comes to rest.
 
     Args:
         e: estimate.

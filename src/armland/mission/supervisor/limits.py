@@ -16,12 +16,7 @@ from numba import njit
 from armland.linking import linked, named
 from armland.records import Limit, Record
 
-L_POSITION, L_SPEED, L_TORQUE, L_RATE = (
-    Limit.JOINT_POSITION,
-    Limit.JOINT_SPEED,
-    Limit.JOINT_TORQUE,
-    Limit.TORQUE_RATE,
-)
+L_POSITION, L_SPEED, L_TORQUE, L_RATE = Limit.JOINT_POSITION, Limit.JOINT_SPEED, Limit.JOINT_TORQUE, Limit.TORQUE_RATE
 L_SINGULAR, L_FORCE, L_FINITE, L_STALE = Limit.SINGULAR, Limit.HINGE_FORCE, Limit.NON_FINITE, Limit.UAV_STALE
 
 DAMPER = 20.0

@@ -12,26 +12,6 @@ from numpy.typing import NDArray
 from armland.mission.table.arrays import FAULT_ROWS, PHASES
 from armland.mission.table.phases import KINDS, Phase
 
-FAULTS = (
-    "none",
-    "non_finite",
-    "arm_stale",
-    "uav_silent",
-    "camera_stale",
-    "wrench_stale",
-    "wrench_drift",
-    "magnet_coil",
-    "overload",
-    "rotor_lost",
-    "uav_tilt",
-    "slip",
-    "near_limit",
-    "law_failed",
-)
-"""What the supervisor can find, the gravest first."""
-
-FAULT = {name: i for i, name in enumerate(FAULTS)}
-
 FAULT_TABLE: dict[str, dict[str, str]] = {
     fault: dict(zip(KINDS, row.split(), strict=True))
     for fault, row in {
@@ -53,8 +33,14 @@ FAULT_TABLE: dict[str, dict[str, str]] = {
 }
 """Fault × kind of phase -> final phase; `-` where the fault does not matter there.
 
-Near a joint's end, near a singularity and beyond the joints' speed no law of the end effector is defined: the brakes are.
+The gravest fault stands first. Near a joint's end, near a singularity and beyond the joints' speed no law of the end effector is
+defined: the brakes are.
 """
+
+FAULTS = ("none", *FAULT_TABLE)
+"""What the supervisor can find, by number."""
+
+FAULT = {name: i for i, name in enumerate(FAULTS)}
 
 ESCALATION: dict[str, dict[str, str]] = {
     "done": {"arm_stale": "braked_down"},

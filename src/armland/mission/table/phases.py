@@ -128,3 +128,8 @@ class Phase(NamedTuple):
     guards: tuple[Guard, ...] = ()
     final: bool = False
     """Whether the mission ends here."""
+
+    def to(self, target: str, conditions: str, hold_s: float = 0.0) -> "Phase":
+        """The phase with one more guard: to `target` when `conditions`, `signal relation threshold, …`, have held for `hold_s`."""
+        made = tuple(Condition(*condition.split()) for condition in conditions.split(", "))
+        return self._replace(guards=(*self.guards, Guard(target, made, hold_s)))

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from armland.control.design.gains import DERIVATIVE_LAG_S
 from armland.control.laws.attitude import (
     AttitudeMemory,
     CascadeGains,
@@ -29,9 +30,6 @@ from armland.scenario import Scenario
 
 CONTROLLERS = ("quaternion_pd", "geometric", "cascade")
 GEOMETRIC, CASCADE = 1, 2
-
-DERIVATIVE_LAG_S = 0.01
-"""Low pass of the cascade's derivative, s."""
 
 UNLIMITED = 1e9
 """rad/s and N·m: the cascade's own limits are not used, the rotors have theirs."""

@@ -7,9 +7,11 @@
 | P(lost) = 1/(1 + exp(−(b₀ + b₁ w/c + b₂ w))) | picture smeared by w px, cells of the marker c px wide |
 | P(lost) = 1/(1 + exp(−(a₀ + a₁ ln c))) | picture at rest: a cell is hard to read where it is small |
 
-Source: `armland detector --fit`, which renders the landing's scene, spoils the pictures (`armland.view.marker_imaging`), runs
+Source: `armland detector --fit`, which renders the landing's scene, spoils the pictures (`armland.vision.imaging`), runs
 `armland.vision.fiducial` and prints the numbers below; calibration errors are left out of them (they are a bias:
-`Camera.shift_m`, `.slope`). Valid from 0.13 m to 1.5 m, tilts up to 25 degrees, 1078 px of focal length, exposures of 4 ms.
+`imperfections.camera_mount_m`, `camera_angle_deg`).
+
+Valid from 0.13 m to 1.5 m, tilts up to 25 degrees, 1078 px of focal length, exposures of 4 ms.
 """
 
 from typing import NamedTuple

@@ -17,9 +17,10 @@ import numpy as np
 from numba import njit
 
 from armland.models.inflow import advance_of, disc_of, factor_at_speed
+from armland.models.parameters import ROTORS
 from armland.models.uav import mixer
 from armland.plant.scene.composition import Scene
-from armland.plant.scene.uav import ROTORS, UAV
+from armland.plant.scene.uav import UAV
 from armland.records import Record, Records
 from armland.rotations import Array, from_rotation_vector, matrix, multiply
 from armland.scenario import Scenario

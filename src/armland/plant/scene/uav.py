@@ -6,15 +6,12 @@ The UAV's file holds a body `uav` whose origin is its centre of mass, and sites 
 import mujoco
 import numpy as np
 
-from armland.errors import ModelError
-from armland.models.description import EE_SITE, frame_names, read_spec, resolve
-from armland.models.parameters import STEEL_KGM3, uav_parameters
+from armland.models.description import EE_SITE
+from armland.models.parameters import ROTOR_SITES, STEEL_KGM3, uav_file, uav_parameters
 from armland.plant.scene.arm import add_capsule
 from armland.rotations import Array
 from armland.scenario import Scenario
 from armland.scenario.gear import Hinge, Plate, Skids
-
-ROTORS = 4
 
 UAV = "uav/"
 """Prefix of the UAV's names in the scene."""
@@ -41,12 +38,7 @@ def uav_spec(scenario: Scenario) -> mujoco.MjSpec:
         ModelError: a file that cannot be used; the message names what it lacks.
     """
     u = scenario.uav
-    spec = read_spec(resolve(u.file), "UAV file")
-    names = frame_names(spec)
-    needed = ["uav", "cm", "pivot", *(f"rotor_{i + 1}" for i in range(ROTORS))]
-    missing = [n for n in needed if n not in names]
-    if missing:
-        raise ModelError(f"UAV file {u.file!r} lacks {', '.join(missing)}; it needs a body 'uav' and the other sites")
+    spec = uav_file(scenario)
     if u.mass_kg is not None or u.inertia_kgm2 is not None or u.extra_mass_kg > 0.0:
         _weigh(spec, scenario)
     if u.lever_m is not None:
@@ -79,7 +71,7 @@ def let_fly(spec: mujoco.MjSpec, uav: mujoco.MjSpec, scenario: Scenario) -> mujo
     """Put the UAV into the scene as a free body with frame shapes, skids and hinge plate; returns its body."""
     body = uav.body("uav")
     body.add_freejoint(name="free")
-    rotors = [site(uav, f"rotor_{i + 1}").pos for i in range(ROTORS)]
+    rotors = [site(uav, name).pos for name in ROTOR_SITES]
     for i in range(2):
         add_capsule(body, f"frame_{i + 1}", [*rotors[i], *rotors[i + 2]], FRAME_RADIUS_M)
     _add_skids(body, scenario.skids)

@@ -19,7 +19,6 @@ CDR_LITTLE_ENDIAN = (0, 1, 0, 0)
 _PREFIX = 9  # opcode and length, which the length of a record does not count
 _FIXED = ("opcode", "length", "channel", "encapsulation")
 
-
 CHANNELS = {name: number for number, name in enumerate(MESSAGES, start=1)}
 """Channel (and schema) number of each message."""
 

@@ -1,6 +1,5 @@
 """A run as flat columns: what `pandas.DataFrame` takes, one column for each number of each message."""
 
-import numpy as np
 from numpy.typing import NDArray
 
 from armland.records import Records
@@ -21,7 +20,5 @@ def columns(ticks: Records, period_ns: int) -> dict[str, NDArray]:
             if values.ndim == 1:
                 found[f"{message}.{field}"] = values
             else:
-                for i in range(int(np.prod(values.shape[1:]))):
-                    index = np.unravel_index(i, values.shape[1:])
-                    found[f"{message}.{field}.{i}"] = values[(slice(None), *map(int, index))]  # type: ignore[arg-type]
+                found |= {f"{message}.{field}.{i}": values[:, i] for i in range(values.shape[1])}
     return found

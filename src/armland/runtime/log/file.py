@@ -81,7 +81,6 @@ class McapFile:
             self._write_head(metadata, texts)
         except LogError:
             self.close()
-            self._part.unlink(missing_ok=True)
             raise
 
     def _write_head(self, metadata: Mapping[str, str], texts: Mapping[str, str]) -> None:
@@ -167,15 +166,15 @@ class McapFile:
                 while rest:
                     rest = rest[self._file.write(rest) :]
         except OSError as error:
-            raise LogError(
-                f"cannot write the run log {self.path}: {error.strerror}; {self._part.name} beside it holds the first "
-                f"{self._ticks} ticks"
-            ) from error
+            kept = f"{self._part.name} holds the first {self._ticks} ticks" if self._ticks else "no tick of it is kept"
+            raise LogError(f"cannot write the run log {self.path.name}: {error.strerror}; {kept}") from error
         self._size += sum(len(part) for part in parts)
 
     def close(self) -> None:
-        """Close the file as it is."""
+        """Close the file as it is; one that holds no tick and came to no end is removed."""
         self._file.close()
+        if not self._ticks:
+            self._part.unlink(missing_ok=True)
 
 
 def _pack(*records: McapRecord) -> bytes:

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, ValidationError
 
 from armland.scenario.quantities import Section, Text, between
 from armland.scenario.refusal import problems
@@ -25,13 +25,9 @@ class Calibrated(Section):
     unit: Text = Field(description="of the three; 1 for a ratio")
     because: str = Field(min_length=10, max_length=2000, description="source or argument for the range")
 
-    @model_validator(mode="after")
-    def _inside(self) -> "Calibrated":
-        unit = "" if self.unit == "1" else f" {self.unit}"
-        for v in self.value:
-            if not self.low <= v <= self.high:
-                raise ValueError(f"value {v:g} lies outside its supported range {self.low:g} to {self.high:g}{unit}")
-        return self
+    def _contradictions(self) -> list[str]:
+        supported = f"its supported range {self.low:g} to {self.high:g}{'' if self.unit == '1' else f' {self.unit}'}"
+        return [f"value {v:g} lies outside {supported}" for v in self.value if not self.low <= v <= self.high]
 
 
 def merge_calibration(data: dict[str, Any], calibration: dict[str, Any], file: Path) -> list[str]:

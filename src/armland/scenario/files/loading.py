@@ -1,5 +1,6 @@
 """Strict scenario loading: TOML, a base, calibrated values from their own file, all errors at once with their path."""
 
+import re
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,6 +26,9 @@ LARGEST = 1_000_000
 
 MOST_BASES = 8
 """Bases on bases."""
+
+DEEP = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""")
+"""A dotted key of more parts than any scenario has tables: the parser's memory grows with the square of them."""
 
 
 def load_scenario(path: str | Path = "landing", overrides: dict[str, Any] | None = None) -> Scenario:
@@ -80,12 +84,14 @@ def read_toml(path: Path) -> dict[str, Any]:
     Raises:
         ConfigurationError: it cannot be read, is too large, or is not TOML.
     """
+    too_deep = ConfigurationError(f"{path.name}: tables or lists are nested too deeply; a scenario needs six levels")
     try:
-        return orderly(tomllib.loads(_text(path)), path.name)
+        text = _text(path)
+        if DEEP.search(text):
+            raise too_deep
+        return orderly(tomllib.loads(text), path.name)
     except RecursionError as e:
-        raise ConfigurationError(
-            f"{path.name}: tables or lists are nested too deeply; a scenario needs six levels"
-        ) from e
+        raise too_deep from e
     except ValueError as e:
         # Besides errors of TOML and of UTF-8, an integer of thousands of digits.
         raise ConfigurationError(f"{path.name} is not valid TOML: {e}") from e

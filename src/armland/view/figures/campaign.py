@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from armland.experiments.summary import FIGURES, Row, value
-from armland.view.figures.canvas import PAGE_IN, paper_style, save, sheet
+from armland.experiments.campaign import FIGURES, Row, value
+from armland.view.figures.canvas import PAGE_IN, drawn, sheet
 
 DOT: dict[str, Any] = {
     "color": "#0072B2",
@@ -24,8 +24,7 @@ BOUND: dict[str, Any] = {"color": "0.35", "linewidth": 0.9, "linestyle": (0, (4.
 
 def draw_campaign(out: Path, rows: Sequence[Row], bounds: Mapping[str, float], mission: str) -> list[Path]:
     """Write `mission`_campaign as PDF and PNG into the folder `out`, and return the files' paths."""
-    with paper_style():
-        return save(campaign_page(rows, bounds), Path(out), f"{mission}_campaign")
+    return drawn(out, {f"{mission}_campaign": lambda: campaign_page(rows, bounds)})
 
 
 def campaign_page(rows: Sequence[Row], bounds: Mapping[str, float]) -> Figure:

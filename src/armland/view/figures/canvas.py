@@ -1,6 +1,6 @@
 """Sheets for print: sizes, style and lines that all figures share, and files whose bytes repeat."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-COLUMN_IN, PAGE_IN = 3.5, 7.16
-"""Widths of one and of two columns of a journal, inches."""
+COLUMN_IN, PAGE_IN = 3.5, 7.16  # Widths of one and of two columns of a journal, inches
 
 DPI = 200
 
@@ -77,10 +76,17 @@ def legend_above(figure: Figure, axes: Axes) -> None:
     figure.legend(handles, labels, loc="outside upper center", ncols=len(handles))
 
 
-def save(figure: Figure, out: Path, name: str) -> list[Path]:
-    """Write `name`.pdf and `name`.png into the folder `out`; the same figure gives the same bytes."""
-    out.mkdir(parents=True, exist_ok=True)
-    pdf, png = out / f"{name}.pdf", out / f"{name}.png"
-    figure.savefig(pdf, metadata={"CreationDate": None})
-    figure.savefig(png, dpi=DPI)
-    return [pdf, png]
+def drawn(out: Path, figures: Mapping[str, Callable[[], Figure]]) -> list[Path]:
+    """Draw figures and write each, by its name, as PDF and PNG into the folder `out`; returns the files' paths.
+
+    The same figure gives the same bytes. A figure that cannot be drawn leaves no folder behind.
+    """
+    paths = []
+    with paper_style():
+        for name, figure_of in figures.items():
+            pdf, png, figure = out / f"{name}.pdf", out / f"{name}.png", figure_of()
+            out.mkdir(parents=True, exist_ok=True)
+            figure.savefig(pdf, metadata={"CreationDate": None})
+            figure.savefig(png, dpi=DPI)
+            paths += [pdf, png]
+    return paths

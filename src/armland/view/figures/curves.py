@@ -7,19 +7,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
+from scipy.spatial.transform import Rotation
 
 from armland.errors import LogError
+from armland.experiments.judge.tracking import deviation
 from armland.view.figures.canvas import line_of
 from armland.view.flown import Flown, Ticks
 
-STILL_M_S = 1e-4
-"""The desired path rests where it is slower than this."""
-
-SMOOTH_S = 0.04
-"""Window of the running mean: short against the UAV's swing of some 0.4 s."""
-
-BUCKETS = 700
-"""Finer than a printer's dots on a page's width."""
+STILL_M_S = 1e-4  # The desired path rests where it is slower than this
+SMOOTH_S = 0.04  # Window of the running mean: short against the UAV's swing of some 0.4 s
+BUCKETS = 700  # Finer than a printer's dots on a page's width
 
 
 class Run(NamedTuple):
@@ -82,20 +79,13 @@ def thinned(x: NDArray, y: NDArray, buckets: int = BUCKETS) -> tuple[NDArray, ND
 
 def deviation_deg(ticks: Ticks) -> NDArray:
     """Angle between the UAV's true attitude and q_d at each tick, (ticks,), deg."""
-    q, q_d = ticks["truth"]["quat"], ticks["reference"]["quat"]
-    cosine = np.sum(q * q_d, axis=1)
-    # The part of q across q_d is the sine of half the angle; arccos of the cosine would lose small angles.
-    sine = np.linalg.norm(q - cosine[:, None] * q_d, axis=1)
-    return np.degrees(2.0 * np.arctan2(sine, np.abs(cosine)))
+    return np.degrees(deviation(ticks["truth"]["quat"], ticks["reference"]["quat"]))
 
 
 def roll_pitch_yaw_deg(ticks: Ticks) -> NDArray:
     """Roll, pitch and yaw of the UAV's true attitude, R = Rz(yaw) Ry(pitch) Rx(roll), (ticks, 3), deg."""
-    w, x, y, z = ticks["truth"]["quat"].T
-    roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    pitch = np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
-    yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-    return np.degrees(np.column_stack([roll, pitch, yaw]))
+    turns = Rotation.from_quat(ticks["truth"]["quat"], scalar_first=True)
+    return np.asarray(turns.as_euler("ZYX", degrees=True)[:, ::-1])
 
 
 def error_mm(ticks: Ticks) -> NDArray:

@@ -19,7 +19,7 @@ from matplotlib.patches import Arc, Rectangle
 from armland.experiments.envelope.bounds import Map
 from armland.experiments.envelope.study import UNITS, EnvelopeStudy, shown
 from armland.models.capture import Grip, covered_offset
-from armland.view.figures.canvas import PAGE_IN, paper_style, save, sheet
+from armland.view.figures.canvas import PAGE_IN, drawn, sheet
 
 # Blue, vermilion, bluish green and reddish purple of Okabe and Ito, as in the other figures.
 INSIDE: dict[str, Any] = {"color": "#0072B2", "linewidth": 1.3, "zorder": 3.1}
@@ -37,10 +37,9 @@ LABELS = {
 }
 
 
-def draw_envelope(out: Path, found: EnvelopeStudy, name: str = "envelope") -> list[Path]:
+def draw_envelope(out: Path, found: EnvelopeStudy) -> list[Path]:
     """Write the page as PDF and PNG into the folder `out`; returns the files' paths."""
-    with paper_style():
-        return save(envelope_figure(found), Path(out), name)
+    return drawn(out, {"envelope": lambda: envelope_figure(found)})
 
 
 def envelope_figure(found: EnvelopeStudy) -> Figure:
@@ -77,10 +76,7 @@ def _draw_map(axes: Axes, m: Map, found: EnvelopeStudy) -> None:
         axes.add_patch(Rectangle((0.0, 0.0), width, height, label="allowed by the mission", **BOX))
     flown = [(SCALE[UNITS[m.x]] * getattr(f, m.x), SCALE[UNITS[m.y]] * getattr(f, m.y)) for f in found.flown]
     axes.plot([p[0] for p in flown], [p[1] for p in flown], label="flown", **FLOWN)
-    axes.set_xlim(0.0, max(x))
-    axes.set_ylim(0.0, 1.08 * max(y))
-    axes.set_xlabel(LABELS[m.x])
-    axes.set_ylabel(LABELS[m.y])
+    axes.set(xlim=(0.0, max(x)), ylim=(0.0, 1.08 * max(y)), xlabel=LABELS[m.x], ylabel=LABELS[m.y])
 
 
 def _draw_directions(axes: Axes, found: EnvelopeStudy) -> None:
@@ -98,9 +94,7 @@ def _draw_directions(axes: Axes, found: EnvelopeStudy) -> None:
     lost = 1e3 * found.allowed.lost
     axes.plot(lost * np.cos(fine), lost * np.sin(fine), color=BOX["edgecolor"], linewidth=0.9, linestyle=":")
     axes.text(0.0, 0.78 * lost, "closing given up", ha="center", va="center", fontsize=7.0)
-    axes.set_aspect("equal")
-    axes.set_xlabel("offset along $x$ (mm)")
-    axes.set_ylabel("offset along $y$ (mm)")
+    axes.set(aspect="equal", xlabel="offset along $x$ (mm)", ylabel="offset along $y$ (mm)")
 
 
 def _draw_interception(axes: Axes, found: EnvelopeStudy) -> None:
@@ -114,14 +108,11 @@ def _draw_interception(axes: Axes, found: EnvelopeStudy) -> None:
     names = [n for n in found.tracked[0].limits if n != "offset"]
     for name, color in zip(names, OTHERS, strict=True):
         axes.plot(f, [1e3 * t.limits[name] for t in found.tracked], color=color, linewidth=0.9, label=name)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_ylim(0.5, 1e7)
+    axes.set(xscale="log", yscale="log", ylim=(0.5, 1e7))
     axes.set_xticks([0.3, 0.5, 1.0, 2.0], ["0.3", "0.5", "1", "2"])
     axes.set_xticks([], minor=True)
     axes.legend(loc="upper right", fontsize=6.5, ncols=2)
-    axes.set_xlabel("frequency of the plate (Hz)")
-    axes.set_ylabel("amplitude (mm)")
+    axes.set(xlabel="frequency of the plate (Hz)", ylabel="amplitude (mm)")
 
 
 def _draw_use(axes: Axes, found: EnvelopeStudy) -> None:

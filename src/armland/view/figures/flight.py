@@ -22,14 +22,13 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from armland.errors import LogError
-from armland.experiments.judge.phases import PhaseTime, phase_times
+from armland.experiments.judge.judgement import PhaseTime, phase_times
 from armland.experiments.judge.whereabouts import tilt_deg
-from armland.view.figures.canvas import DESIRED, PAGE_IN, legend_above, paper_style, save, shade, sheet
+from armland.view.figures.canvas import DESIRED, PAGE_IN, drawn, legend_above, shade, sheet
 from armland.view.figures.curves import Run
 from armland.view.flown import Flown, Ticks
 
-CLOSEST_MM = 0.1
-"""Lower edge of the distance panel."""
+CLOSEST_MM = 0.1  # Lower edge of the distance panel
 
 # Blue, vermilion and bluish green of Okabe and Ito, as in the other figures.
 UAV = {"color": "#0072B2", "linewidth": 1.1, "zorder": 3.1}
@@ -46,8 +45,7 @@ def draw_flight(out: Path, run: Flown) -> list[Path]:
     Raises:
         LogError: fewer than two ticks.
     """
-    with paper_style():
-        return save(overview_figure(run), Path(out), f"{run.brief.mission}_overview")
+    return drawn(out, {f"{run.brief.mission}_overview": lambda: overview_figure(run)})
 
 
 def overview_figure(run: Flown) -> Figure:
@@ -70,8 +68,7 @@ def overview_figure(run: Flown) -> Figure:
     for axes in (panels[0], *panels[2:]):
         axes.yaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
     panels[-1].xaxis.set_major_locator(MaxNLocator(nbins=10, integer=True))
-    panels[-1].set_xlim(0.0, len(time) / rate_hz)
-    panels[-1].set_xlabel("time $t$ (s)")
+    panels[-1].set(xlim=(0.0, len(time) / rate_hz), xlabel="time $t$ (s)")
     _draw_phases(strip, panels, phases)
     figure.align_ylabels()
     legend_above(figure, panels[3])
@@ -114,9 +111,7 @@ def _draw_place(height: Axes, distance: Axes, time: NDArray, log: Ticks) -> None
     Run("arm", time, log, ARM).plot(height, log["truth"]["ee"][:, 2])
     height.set_ylabel("height (m)")
     Run("", time, log, DESIRED).plot(distance, np.maximum(distance_mm(log), CLOSEST_MM))
-    distance.set_yscale("log")
-    distance.set_ylim(bottom=CLOSEST_MM)
-    distance.set_ylabel("horiz. distance (mm)")
+    distance.set(yscale="log", ylim=(CLOSEST_MM, None), ylabel="horiz. distance (mm)")
 
 
 def _draw_forces(hinge: Axes, vertical: Axes, time: NDArray, log: Ticks, rate_hz: int) -> None:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,15 +12,13 @@ from armland.errors import PictureError
 from armland.plant.noise import stream
 from armland.rotations import angle, conjugate, from_rotation_vector, matrix, multiply
 from armland.scenario.sensing import Camera
-from armland.view.figures.canvas import PAGE_IN, legend_above, paper_style, save, shade, sheet
-from armland.vision.eye import Shot
+from armland.view.figures.canvas import PAGE_IN, drawn, legend_above, shade, sheet
 from armland.vision.fiducial import Detection, detect, project
-from armland.vision.flight import Flight
+from armland.vision.flight import Flight, Shot
 from armland.vision.frames import frames
 from armland.vision.imaging import Imaging, Motion, photographed
-from armland.vision.rows import Errors, Row
 from armland.vision.scene import EYE, MarkerScene, build_marker_scene
-from armland.vision.study import FACING
+from armland.vision.study import FACING, Errors, Row
 
 _BLUE, _RED, _GREEN, _GREY = "#0072B2", "#D55E00", "#009E73", "#666666"
 
@@ -33,11 +30,8 @@ _DEMO = Motion(
 )
 """The marker in the picture of `draw_marker_demo`."""
 
-UNITS = (1e3, 1e3, 180.0 / np.pi, 180.0 / np.pi)
-"""mm and degrees."""
-
-SHEET = (4, 3)
-"""Rows and columns of a contact sheet."""
+UNITS = (1e3, 1e3, 180.0 / np.pi, 180.0 / np.pi)  # mm and degrees
+SHEET = (4, 3)  # Rows and columns of a contact sheet
 
 
 def draw_marker_figure(out: Path, rows: Sequence[Row], camera: Camera) -> list[Path]:
@@ -45,8 +39,7 @@ def draw_marker_figure(out: Path, rows: Sequence[Row], camera: Camera) -> list[P
 
     Grey: distances at which the model no longer finds the marker.
     """
-    with paper_style():
-        return save(_error_figure(rows, camera), Path(out), "fig_marker_error")
+    return drawn(out, {"fig_marker_error": lambda: _error_figure(rows, camera)})
 
 
 def draw_marker_demo(out: Path, scene: MarkerScene | None = None) -> tuple[list[Path], Detection]:
@@ -65,8 +58,7 @@ def draw_marker_demo(out: Path, scene: MarkerScene | None = None) -> tuple[list[
     seen = detect(image, scene.size_m, scene.intrinsics)
     if not seen:
         raise PictureError("the detector found no marker in the demonstration's picture, where there is one")
-    with paper_style():
-        return save(_demo_figure(image, scene, seen[0]), Path(out), "fig_marker_demo"), seen[0]
+    return drawn(out, {"fig_marker_demo": lambda: _demo_figure(image, scene, seen[0])}), seen[0]
 
 
 def draw_contact_sheet(out: Path, shots: Sequence[Shot], scene: MarkerScene, titles: Sequence[str]) -> list[Path]:
@@ -78,23 +70,27 @@ def draw_contact_sheet(out: Path, shots: Sequence[Shot], scene: MarkerScene, tit
         scene: whose camera took them.
         titles: of all of the shots.
     """
-    count = min(SHEET[0] * SHEET[1], len(shots))
-    with paper_style():
-        figure = sheet(PAGE_IN, 7.6)
-        panels = figure.subplots(*SHEET)
-        for axes in panels.ravel():
-            axes.set_axis_off()
-        for axes, i in zip(panels.ravel(), np.linspace(0, len(shots) - 1, count).round().astype(int), strict=False):
-            shot = shots[i]
-            # Half the resolution is enough at this size.
-            axes.imshow(shot.image[::2, ::2], cmap="gray", vmin=0, vmax=255, extent=_extent(shot.image))
-            if shot.found is not None:
-                _ring(axes, shot.found)
-                _axes_of_marker(axes, scene, shot.found, names=False)
-            off = 1e3 * np.linalg.norm(shot.error[0])
-            verdict = f"{shot.motion.position[2]:.2f} m, error {off:.2f} mm" if shot.found else "not found"
-            axes.set_title(f"{titles[i]}: {verdict}", fontsize=7.0)
-        return save(figure, Path(out), "fig_marker_sheet")
+    return drawn(out, {"fig_marker_sheet": lambda: _contact_sheet(shots, scene, titles)})
+
+
+def _contact_sheet(shots: Sequence[Shot], scene: MarkerScene, titles: Sequence[str]) -> Figure:
+    count, figure = min(SHEET[0] * SHEET[1], len(shots)), sheet(PAGE_IN, 7.6)
+    panels = figure.subplots(*SHEET).ravel()
+    for axes in panels:
+        axes.set_axis_off()
+    for axes, i in zip(panels, np.linspace(0, len(shots) - 1, count).round().astype(int), strict=False):
+        shot = shots[i]
+        height, width = shot.image.shape
+        # Half the resolution is enough at this size.
+        extent = (-0.5, width - 0.5, height - 0.5, -0.5)
+        axes.imshow(shot.image[::2, ::2], cmap="gray", vmin=0, vmax=255, extent=extent)
+        if shot.found is not None:
+            _ring(axes, shot.found)
+            _axes_of_marker(axes, scene, shot.found, names=False)
+        off = 1e3 * np.linalg.norm(shot.error[0])
+        verdict = f"{shot.motion.position[2]:.2f} m, error {off:.2f} mm" if shot.found else "not found"
+        axes.set_title(f"{titles[i]}: {verdict}", fontsize=7.0)
+    return figure
 
 
 def draw_flight(out: Path, flight: Flight) -> list[Path]:
@@ -104,10 +100,6 @@ def draw_flight(out: Path, flight: Flight) -> list[Path]:
     # The first picture is taken before the mission knows its phase.
     titles = [names[max(int(np.searchsorted(starts, i, side="right")) - 1, 0)] for i in range(len(flight.shots))]
     return draw_contact_sheet(out, flight.shots, flight.scene, titles)
-
-
-def _extent(image: NDArray[Any]) -> tuple[float, float, float, float]:
-    return -0.5, image.shape[1] - 0.5, image.shape[0] - 0.5, -0.5
 
 
 def _error_figure(rows: Sequence[Row], camera: Camera) -> Figure:
@@ -134,15 +126,13 @@ def _error_figure(rows: Sequence[Row], camera: Camera) -> Figure:
 
 
 def _finish(axes: Axes, title: str, camera: Camera) -> None:
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     ticks = [0.15, 0.3, 0.6, 1.2, 2.4]
     axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
     axes.set_xticks([], minor=True)
     right = axes.get_xlim()[1]
     shade(axes, [(camera.depth_max_per_size * camera.marker_size_m, right)])
-    axes.set_xlim(right=right)
-    axes.set_xlabel("distance (m)")
+    axes.set(xlim=(None, right), xlabel="distance (m)")
     axes.set_title(title, fontsize=8.0)
 
 
@@ -156,8 +146,7 @@ def _demo_figure(image: NDArray[np.uint8], scene: MarkerScene, found: Detection)
         _axes_of_marker(axes, scene, found)
     low, high = found.corners.min(axis=0), found.corners.max(axis=0)
     middle, half = 0.5 * (low + high), 0.75 * float((high - low).max())
-    close.set_xlim(middle[0] - half, middle[0] + half)
-    close.set_ylim(middle[1] + half, middle[1] - half)
+    close.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] + half, middle[1] - half))
     close.plot(*found.corners.T, "+", color=_RED, markersize=7.0)
     whole.set_title("camera at the end effector", fontsize=8.0)
     close.set_title(_verdict(found), fontsize=8.0)

@@ -18,10 +18,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from armland.errors import LogError
 from armland.experiments.paper import PUBLISHED
-from armland.view.figures.canvas import COLUMN_IN, DESIRED, PAGE_IN, legend_above, paper_style, save, shade, sheet
+from armland.plant.scene.composition import build_scene
+from armland.plant.simulator import level_hinge
+from armland.rotations import matrix
+from armland.runtime.log import Log
+from armland.scenario import Scenario
+from armland.view.figures.canvas import COLUMN_IN, DESIRED, PAGE_IN, drawn, legend_above, shade, sheet
 from armland.view.figures.curves import Run, clocked, deviation_deg, error_mm, moves, rests, roll_pitch_yaw_deg
 from armland.view.flown import Flown
+from armland.vision.picture import render
 
 PUBLISHED_DEG = {name: PUBLISHED[name]["attitude_max_deg"] for name in ("E1", "E2")}
 """Largest attitude deviations that the paper reports, deg."""
@@ -38,11 +45,7 @@ def draw_paper_figures(out: Path, runs: Sequence[Flown]) -> list[Path]:
         LogError: no runs, or one that ends before the desired path starts.
     """
     on_clock = clocked(runs)
-    paths = []
-    with paper_style():
-        for name, figure_of in FIGURES.items():
-            paths += save(figure_of(on_clock), Path(out), name)
-    return paths
+    return drawn(out, {name: partial(figure_of, on_clock) for name, figure_of in FIGURES.items()})
 
 
 def trajectory_figure(runs: Sequence[Run]) -> Figure:
@@ -55,8 +58,7 @@ def trajectory_figure(runs: Sequence[Run]) -> Figure:
     half = 0.62 * max(np.ptp(r_d, axis=0).max(), 1e-3)
     for i, axes in enumerate(panels):
         run.plot(axes, r_d[:, i], **{"label": "desired", **DESIRED})
-        axes.set_ylim(middle[i] - half, middle[i] + half)
-        axes.set_ylabel(f"$r_{{d,{_WORLD[i]}}}$ (m)")
+        axes.set(ylim=(middle[i] - half, middle[i] + half), ylabel=f"$r_{{d,{_WORLD[i]}}}$ (m)")
     _finish(figure, panels, runs)
     for begin, end in rests(run):
         # In a shorter rest the word would cover the moves beside it.
@@ -84,8 +86,7 @@ def attitude_figure(runs: Sequence[Run]) -> Figure:
             axes.annotate(
                 text, (1.0, published), (-3, 2.5), ("axes fraction", "data"), "offset points", ha="right", color=color
             )
-    axes.set_ylim(0.0, max(1.14 * top, 1e-3))
-    axes.set_ylabel("attitude deviation (°)")
+    axes.set(ylim=(0.0, max(1.14 * top, 1e-3)), ylabel="attitude deviation (°)")
     _finish(figure, [axes], runs)
     legend_above(figure, axes)
     return figure
@@ -160,8 +161,7 @@ def _finish(figure: Figure, panels: Sequence[Axes], runs: Sequence[Run]) -> None
         shade(axes, moves(longest))
         axes.yaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
         axes.xaxis.set_major_locator(MaxNLocator(nbins=8, integer=True))
-    panels[-1].set_xlim(longest.time[0], longest.time[-1])
-    panels[-1].set_xlabel("time $t$ (s)")
+    panels[-1].set(xlim=(longest.time[0], longest.time[-1]), xlabel="time $t$ (s)")
     figure.align_ylabels()
 
 
@@ -175,3 +175,20 @@ FIGURES: dict[str, Callable[[Sequence[Run]], Figure]] = {
     "fig_forces": forces_figure,
 }
 """The figures by the names of their files."""
+
+
+def draw_scene(out: Path, log: Log) -> Path:
+    """Draw arm and hinged UAV as the log's first tick has them, with the scenario that stands in the log.
+
+    Raises:
+        LogError: a log without scenario or ticks, or of a UAV that is not hinged.
+        PictureError: no OpenGL that works.
+        ModelError: a file of the scenario is no longer there.
+    """
+    if "scenario" not in log.metadata or not len(log.messages["truth"]) or log.metadata.get("start") != "hinged":
+        raise LogError("a picture of the scene needs the log of an experiment with its scenario, such as E1")
+    truth = log.messages["truth"][0]
+    scene = build_scene(Scenario.model_validate_json(log.metadata["scenario"]), "hinged")
+    qpos = np.zeros(scene.model.nq)
+    qpos[scene.joint_qpos], qpos[scene.hinge_qpos] = truth["q"], level_hinge(matrix(truth["ee_quat"]))
+    return render(scene.model, qpos, out / "scene.png")

@@ -14,12 +14,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from armland.experiments.takeoff_weight.study import TakeoffWeight
-from armland.experiments.takeoff_weight.theory import GAINS, HEIGHTS_M, READINGS
-from armland.experiments.takeoff_weight.throw import Air, heaviest_thrown
+from armland.experiments.takeoff_weight.theory import GAINS, HEIGHTS_M, READINGS, Air, heaviest_thrown
 from armland.mission.belief import rotors_of
 from armland.models.inflow import Rotors, sustained
 from armland.scenario import Scenario
-from armland.view.figures.canvas import PAGE_IN, paper_style, save, sheet
+from armland.view.figures.canvas import PAGE_IN, drawn, sheet
 
 COLORS = {"constant rotor speed": "#0072B2", "constant power": "#D55E00"}
 MARKS = {"rest": "o", "sideways": "s", "forward": "D", "upwards": "^"}
@@ -27,8 +26,7 @@ MARKS = {"rest": "o", "sideways": "s", "forward": "D", "upwards": "^"}
 
 def draw_takeoff_weight(out: Path, found: TakeoffWeight, scenario: Scenario) -> list[Path]:
     """Write takeoff_weight as PDF and PNG into the folder `out`, and return the files' paths."""
-    with paper_style():
-        return save(takeoff_weight_figure(found, scenario), Path(out), "takeoff_weight")
+    return drawn(out, {"takeoff_weight": lambda: takeoff_weight_figure(found, scenario)})
 
 
 def takeoff_weight_figure(found: TakeoffWeight, scenario: Scenario) -> Figure:
@@ -54,15 +52,13 @@ def takeoff_weight_figure(found: TakeoffWeight, scenario: Scenario) -> Figure:
     _draw_level(far, rotors, drag, 8.0)
     for gain in GAINS:
         far.axhline(100.0 * gain, color="0.5", linewidth=0.6, linestyle=(0, (4.0, 2.0)))
-    far.set_ylim(-1.0, 24.0)
-    far.set_title("kept, at any speed")
+    far.set(ylim=(-1.0, 24.0), title="kept, at any speed")
     for axes in (near, far):
         axes.axvspan(-1.0, fastest, color="0.945", linewidth=0.0, zorder=0.0)
     _draw_thrown(thrown, rotors, drag, 1.5)
     thrown.axvspan(0.0, min(found.arm_speed_mps.values()), color="0.945", linewidth=0.0, zorder=0.0)
     for axes in (near, far, thrown):
-        axes.set_xlabel("speed given (m/s)")
-        axes.set_xlim(left=-0.02 if axes is near else 0.0)
+        axes.set(xlabel="speed given (m/s)", xlim=(-0.02 if axes is near else 0.0, None))
         if axes is not far:
             axes.legend(fontsize=6.0, loc="upper left")
     near.set_ylabel("gain of take-off weight (%)")
@@ -84,5 +80,4 @@ def _draw_thrown(axes: Axes, rotors: Rotors, drag: float, most: float) -> None:
         gain = [100.0 * (heaviest_thrown(Air(rotors, drag), v, height)[0] - 1.0) for v in speeds]
         label = f"may lose {height:g} m"
         axes.plot(speeds, gain, color="#0072B2", linestyle=style, marker=".", linewidth=1.0, label=label)
-    axes.set_ylim(bottom=0.0)
-    axes.set_title("thrown, then gaining speed")
+    axes.set(ylim=(0.0, None), title="thrown, then gaining speed")

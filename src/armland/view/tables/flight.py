@@ -5,12 +5,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from armland.experiments.judge.brief import Brief
-from armland.experiments.judge.figures import NAMES
+from armland.experiments.judge.figures import bounds
 from armland.records import LIMIT_NAMES
 from armland.view.flown import Flown
 from armland.view.tables.verdicts import cell, mark, terminal, titled
@@ -70,8 +68,9 @@ def print_flight(result: Mapping[str, Any], run: Flown | None, out: Path) -> Non
     verdict = Text.from_markup("[bold green]success[/]: " if result["success"] else "[bold red]failure[/]: ")
     console.print(verdict.append(result["reason"]))
     console.print(_phases(result))
-    console.print(_figures(result, {} if run is None else _bounds(run.brief)))
-    _lines(console, result, run)
+    console.print(_figures(result, {} if run is None else bounds(run.brief)))
+    for line in _sentences(result, run):
+        console.print(line, markup=False)
     console.print(f"The data is in {out}/", markup=False)
 
 
@@ -83,25 +82,13 @@ def _phases(result: Mapping[str, Any]) -> Table:
     return table
 
 
-def _bounds(brief: Brief) -> dict[str, float]:
-    bounds = {NAMES.get(c.name, c.name): c.bound for c in brief.criteria}
-    if "hinge_max" in brief.limits:
-        bounds["hinge_force_max_n"] = float(brief.limits["hinge_max"])
-    return bounds | ({"joint_torque_max_ratio": 1.0} if "tau_max" in brief.limits else {})
-
-
-def _figures(result: Mapping[str, Any], bounds: dict[str, float]) -> Table:
+def _figures(result: Mapping[str, Any], limits: dict[str, float]) -> Table:
     table = titled("Figures", "", "found", "bound", "", left=(0, 3))
     for group, rows in GROUPS.items():
         if group in result:
-            _group(
-                table,
-                group,
-                rows,
-                result[group],
-                {n.partition(".")[2]: b for n, b in bounds.items() if n.startswith(group)},
-            )
-    _group(table, "whole flight", LOADS, result, bounds)
+            own = {name.partition(".")[2]: bound for name, bound in limits.items() if name.startswith(group)}
+            _group(table, group, rows, result[group], own)
+    _group(table, "whole flight", LOADS, result, limits)
     return table
 
 
@@ -118,11 +105,6 @@ def _group(
             # A value that is not there holds nothing. The slack is rounding's, as the judge grants it.
             verdict = mark(value is not None and value <= bound * (1.0 + 1e-9))
         table.add_row(Text(f"  {row.label}"), cell(value, row.scale, row.form), words, verdict)
-
-
-def _lines(console: Console, result: Mapping[str, Any], run: Flown | None) -> None:
-    for line in _sentences(result, run):
-        console.print(line, markup=False)
 
 
 def _sentences(result: Mapping[str, Any], run: Flown | None) -> Iterator[str]:

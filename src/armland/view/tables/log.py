@@ -10,8 +10,7 @@ from armland.records import MESSAGES
 from armland.runtime.log import Log
 from armland.view.tables.verdicts import terminal, titled
 
-LISTS = ("phases", "faults", "finals")
-"""Entries of the metadata that are lists of names."""
+LISTS = ("phases", "faults", "finals")  # Entries of the metadata that are lists of names
 
 
 def described(log: Log) -> dict[str, Any]:

@@ -4,15 +4,12 @@ from collections.abc import Sequence
 
 from armland.experiments.envelope.sight import Band
 from armland.view.figures.markers import UNITS
-from armland.vision.rows import Row
+from armland.vision.study import Row
 
 
 def errors_table(rows: Sequence[Row]) -> str:
     """The study as Markdown: root mean squares for each axis of detector on ideal and honest pictures, model, published."""
-    lines = [
-        "| distance m | found % | lateral mm | depth mm | tilt ° | yaw ° |",
-        "|---|---|---|---|---|---|",
-    ]
+    lines = ["| distance m | found % | lateral mm | depth mm | tilt ° | yaw ° |", "|---|---|---|---|---|---|"]
     for r in rows:
         found = " / ".join(f"{100.0 * e.found:.0f}" for e in (r.ideal, r.honest, r.model))
         cells = []
@@ -28,10 +25,7 @@ def errors_table(rows: Sequence[Row]) -> str:
 
 def sight_table(bands: Sequence[Band]) -> str:
     """What share of the marker's face, margin included, the camera sees on a landing, as Markdown."""
-    lines = [
-        "| distance m | images | least share of the marker seen | hidden by |",
-        "|---|---|---|---|",
-    ]
+    lines = ["| distance m | images | least share of the marker seen | hidden by |", "|---|---|---|---|"]
     for b in bands:
         what = ", ".join(b.hidden_by) or "nothing"
         lines.append(f"| {b.near_m:g} to {b.far_m:g} | {b.exposures} | {100.0 * b.least_seen:.0f} % | {what} |")

@@ -5,8 +5,7 @@ from typing import Any
 
 from rich.table import Table
 
-from armland.experiments.proof.attribution import TERMS
-from armland.experiments.proof.ledger import NOTICEABLE_W
+from armland.experiments.proof.attribution import NOTICEABLE_W, TERMS
 from armland.view.tables.verdicts import terminal, titled, verdict_table
 
 ROWS = (

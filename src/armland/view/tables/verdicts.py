@@ -7,8 +7,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-UNBOUNDED = 1e9
-"""An upper bound from here on is none; JSON knows no infinity."""
+from armland.experiments.paper import UNBOUNDED
 
 
 def terminal() -> Console:

@@ -1,0 +1,160 @@
+"""The page `docs/faults.md`: what can fail, how it is seen, what happens then, and what trials in the plant measured."""
+
+from armland.mission.supervisor.ends import FINALS, HINGED_FINALS
+from armland.mission.supervisor.faults import LOAD_LEFT, SEEN_S
+from armland.mission.supervisor.remedies import REMEDIES, STANDING
+from armland.mission.supervisor.table import DEBOUNCE_S, ESCALATION, FAULT_TABLE, FAULTS, GRAVITY_OF
+from armland.mission.table.phases import KINDS
+from armland.scenario.faults import Fault
+from armland.scenario.mission import Limits
+from pages.flights import Flight
+from pages.trials import OPEN, Trial
+
+_HEAD = """\
+# Faults
+
+Made by `make pages`, which flies every trial; edit the tables in `mission/supervisor/` and `tools/pages/trials.py`.
+
+The supervisor looks for faults at every tick, the gravest first, and ends the mission in the final phase that its table names for
+the kind of phase that is flown. It may only take authority away. A mission that has ended is watched further: a second fault
+leads on to a graver end and never back.
+
+Kinds of phases: `ground` (nobody flies on the ground's word, nothing is gripped), `flight` (the UAV flies guided, nothing touches),
+`touch` (the magnet works on the plate, the rotors carry), `held` (the arm carries), `cradle` (the rails carry, the landing is nearly
+over), `grip` (the rails carry, the take-off has hardly begun), `hinge` (the UAV is bound to the arm for good).
+"""
+
+_NOTES = """\
+## What the figures say
+
+- **A sample that cannot be used has not come.** Numbers that are none, and a joint that leaps by more than 50 rad/s, are replaced by
+  the last good value and stop their device's clock: a dead encoder ends in brakes after 5 ms, not in a law that runs on old angles.
+- **A link is silent when either direction is.** Each sample of the UAV says when the newest command had reached it; a UAV that no
+  longer hears is found as fast as one that no longer speaks.
+- **A magnet that dies while it carries is not felt at once.** Half the weight still presses the plate onto the face, the force does not
+  change, and the plate slides off at 1 to 4 cm/s. Images alone show it. At 10 mm the plate still rests on its pads; the UAV gets
+  its thrust back while it stands there, and the arm draws back below it: it sinks by 10 cm at 0.3 m/s at most while its hover
+  takes over, and is not touched. With the camera blind as
+  well, the missing load is all there is to see, the UAV is 50 ms further on its way, sinks at 0.7 m/s and touches the tool.
+- **A silent UAV on a dead magnet is left lying on it**: it could not be given its thrust back.
+- **A UAV that does not obey** is found as a force that load and thrust do not explain. It is held, and nothing else is decided: it
+  cannot be put down with its rotors running. When it has stopped or listens again, a person takes it from there. On the cradle, without
+  force in the hinge, it is released, and flies by itself.
+- **A UAV with a weak rotor** (70 %) is landed as any other; the take-off does not let it go, because it does not stand level: on one
+  seed in three it tumbled over the arm when it was.
+- **Brakes stop an arm that was struck within milliseconds**, hard enough for the plate to slide by 13 mm on the face (shear is a fifth
+  of the pull); that slip is seen and the UAV let go, flying.
+- **A false report of the UAV's attitude while it is held** is not told from a real tilt; that cell belongs to the loss of a rotor.
+"""
+
+
+def faults_markdown(flights: list[Flight]) -> str:
+    """The page as Markdown, with the figures of `flights`."""
+    return "\n".join([static_part(), measured_part(flights), _NOTES])
+
+
+def static_part() -> str:
+    """What stands in the tables."""
+    parts = [
+        _HEAD,
+        "## How a fault is seen",
+        "",
+        "| fault | what it means | sign | for | remedy |",
+        "|---|---|---|---|---|",
+    ]
+    for fault in FAULTS[1:]:
+        means, remedy = REMEDIES[fault]
+        held = f"{1e3 * DEBOUNCE_S[fault]:g} ms" if fault in DEBOUNCE_S else "one tick"
+        parts.append(f"| `{fault}` | {means} | {signs()[fault]} | {held} | {remedy} |")
+    parts += ["", "## Where it leads", "", f"| fault | {' | '.join(KINDS)} |", "|---" * (len(KINDS) + 1) + "|"]
+    for fault, row in FAULT_TABLE.items():
+        parts.append(f"| `{fault}` | {' | '.join(row[k] for k in KINDS)} |")
+    parts += [
+        "",
+        "`-`: the fault does not matter there, or the procedure itself copes; the trials below show what becomes of it.",
+    ]
+    parts += ["", "## The ends", "", "| end | what holds there | rank | a second fault leads on |", "|---|---|---|---|"]
+    for p in (*FINALS, *(p for p in HINGED_FINALS if p.name not in {f.name for f in FINALS})):
+        on = ", ".join(f"`{f}` to `{e}`" for f, e in ESCALATION.get(p.name, {}).items()) or "-"
+        parts.append(f"| `{p.name}` | {STANDING[p.name]} | {GRAVITY_OF[p.name]} | {on} |")
+    parts += ["", "A take-off that is `done` flies guided still and is watched as in `flight`.", ""]
+    return "\n".join(parts)
+
+
+def signs() -> dict[str, str]:
+    """Fault -> its sign with its thresholds."""
+    v = Limits()
+    return {
+        "non_finite": "any number in the measurement that is not finite",
+        "arm_stale": f"joint sample older than {v.arm_age_ms:g} ms",
+        "uav_silent": f"sample of the UAV, or the command that it had heard by then, older than {v.uav_age_ms:g} ms",
+        "camera_stale": f"newest fused image older than {v.camera_age_ms:g} ms, once there was one",
+        "wrench_stale": f"force sample older than {v.wrench_age_ms:g} ms",
+        "wrench_drift": f"vertical hinge force {v.unexplained_n:g} N off what load and thrust explain, where they do",
+        "magnet_coil": f"coil current below what {v.magnet_share:g} of the rated pull needs, 0.15 s after it was switched on",
+        "overload": f"hinge force above what healthy flights of the phase make, at most {v.hinge_force_share:g} of the magnet's rating",
+        "rotor_lost": f"tilt plus tilt rate over the rate of fall above {v.capture_deg:g}° while the UAV is held",
+        "uav_tilt": f"tilt above {v.tilt_deg:g}°",
+        "slip": f"plate more than {1e3 * v.slip_m:g} mm off in two images in a row; "
+        f"without an image of the last {1e3 * SEEN_S:g} ms, less than {LOAD_LEFT:g} of an expected load "
+        f"above {v.load_gone_n:g} N; never with a silent UAV",
+        "near_limit": f"joint within {v.joint_margin_rad:g} rad of its end, singular value below {v.sigma_min:g}, or joint speed "
+        f"above {v.joint_speed_share:g} of its limit",
+        "law_failed": "the law in use, a user's own, raised an exception or returned a number that is not finite",
+    }
+
+
+def provoked(faults: tuple[Fault, ...]) -> str:
+    """What was made to fail, in words."""
+    return ", then ".join(f"{_words(f)} {f.after_s:g} s into {f.phase}" for f in faults)
+
+
+def _words(f: Fault) -> str:
+    match f.kind:
+        case "non_finite":
+            return f"NaN from {f.device}"
+        case "push":
+            return f"push of {f.size:g} N on the {f.body}"
+        case "overload":
+            return f"{'jerk' if f.size < 0 else 'load'} of {abs(f.size):g} N on the UAV"
+        case "wrench_drift":
+            return f"force sensor drifting {f.size:+g} N/s"
+        case "unreachable":
+            return "UAV that does not obey"
+        case "encoder_offset" | "attitude_offset":
+            return f"{f.kind.replace('_', ' ')} of {f.size:g} rad"
+        case "magnet_coil" | "magnet_slip" | "rotor_loss":
+            return f"{f.kind.replace('_', ' ')} of {100 * f.size:g} %"
+        case kind:
+            return kind.replace("_", " ")
+
+
+def measured_part(flights: list[Flight]) -> str:
+    """The table of trials; the figures are those of seed 1."""
+    head = ["trial", "provoked by", "ends in", "found", "UAV", "after s", "sinks m/s", "drop mm", "tilt °", "hinge N"]
+    parts = [
+        "## Trials in the plant",
+        "",
+        "*after* counts from the (last) failure to the end, *sinks* is the UAV's largest downward speed, *drop* how far it went",
+        "below where the end found it. A fall is 1.2 m/s. Each trial also shows finite commands, joint torques within their limits",
+        "and their rate, an arm at rest, and a magnet that does what the end says; with the supervisor blind to the fault the same",
+        "failure comes out differently.",
+        "",
+        f"| {' | '.join(head)} |",
+        "|---" * len(head) + "|",
+    ]
+    parts += [row(f) for f in flights]
+    parts += [
+        "",
+        *(f"Not here: {mission} `{fault}` `{kind}` ({what})." for (mission, fault, kind), what in OPEN.items()),
+        "",
+    ]
+    return "\n".join(parts)
+
+
+def row(f: Flight) -> str:
+    """One line of the table of trials."""
+    t: Trial = f.trial
+    figures = f"{f.reaction_s:.2f} | {f.sink_mps:.2f} | {1e3 * f.drop_m:.0f} | {f.tilt_deg:.1f} | {f.force_n:.1f}"
+    ends, found = ", ".join(f.ends), ", ".join(f.found)
+    return f"| {t.name} | {provoked(t.faults)} | {ends} | {found} | {f.judgement.state} | {figures} |"

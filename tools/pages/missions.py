@@ -1,0 +1,113 @@
+"""The pages in `docs/missions/`: each made from the mission's own value, with the thresholds that the controller flies by."""
+
+from collections.abc import Iterator
+
+from armland.mission.plan import plan
+from armland.mission.registry import MISSIONS
+from armland.mission.table.mission import Mission
+from armland.mission.table.phases import KINDS, SIGNALS, Guard, Phase
+from armland.scenario import Scenario, load_scenario
+
+YES_OR_NO = ("uav_seen", "contact", "magnet_ready", "magnet_fault", "bias_known")
+STARTS = {
+    "air": "in the air",
+    "cradle": "on the cradle",
+    "hinged": "on the arm's hinge",
+}
+SHARES = {
+    "none": "ramp to nothing",
+    "carry": "ramp to a share of the weight",
+    "whole": "ramp to the weight",
+    "test": "ramp to the weight and a pull that tests the grip",
+}
+
+
+def mission_markdown(name: str, scenario: Scenario, experiment: str | None = None) -> str:
+    """The page of a mission as Markdown, with the numbers of a scenario."""
+    mission = MISSIONS[name]
+    planned = plan(scenario, name, experiment=experiment)
+    parts = [
+        f"# {name}: {mission.summary}",
+        "",
+        f"Made from `mission/missions/` by `make pages`, with the numbers of the scenario `{scenario_of(mission)}`.",
+        "",
+        f"    armland run {name}{f' {scenario_of(mission)} --experiment {experiment}' if experiment else ''}",
+        "",
+        f"It begins with the UAV {STARTS[mission.start]}.",
+        "",
+        mission.doc,
+        "",
+        "## Phases",
+        "",
+        "| phase | kind | arm | UAV | magnet | ends when | or after |",
+        "|---|---|---|---|---|---|---|",
+        *(_phase(p, planned.thresholds) for p in planned.phases if not p.final),
+        "",
+        *_timeouts(mission),
+        *_faults(mission, planned.phases),
+        *_criteria(mission),
+        "## Keys of the scenario",
+        "",
+        "It uses these, and refuses others by name: " + ", ".join(f"`{key}`" for key in sorted(mission.uses)) + ".",
+        "",
+    ]
+    return "\n".join(parts)
+
+
+def scenario_of(mission: Mission) -> str:
+    """Name of the scenario whose numbers a mission's page shows."""
+    if mission.start != "hinged":
+        return "landing"
+    return "paper" if mission.experiment else "compare"
+
+
+def pages() -> Iterator[tuple[str, str]]:
+    """Name and text of every page."""
+    for name, mission in MISSIONS.items():
+        scenario = load_scenario(scenario_of(mission))
+        row = "observer" if mission.start == "hinged" and mission.experiment is None else None
+        yield f"{name}.md", mission_markdown(name, scenario, row)
+
+
+def _phase(p: Phase, thresholds: dict[str, float]) -> str:
+    uav = SHARES[p.share] if p.uav == "ramp" else p.uav
+    ends = "; ".join(_way_out(g, thresholds) for g in p.guards)
+    return f"| `{p.name}` | {p.kind} | {p.arm} | {uav} | {p.magnet} | {ends} | {p.timeout_s:g} s: `{p.on_timeout}` |"
+
+
+def _way_out(guard: Guard, thresholds: dict[str, float]) -> str:
+    conditions = []
+    for c in guard.conditions:
+        unit, value = SIGNALS[c.signal], ""
+        if c.threshold != "half":
+            value = f" {c.relation} {thresholds[c.threshold]:.4g}{'' if unit == '1' else ' ' + unit}"
+        no = "not " if c.signal in YES_OR_NO and c.relation == "<" else ""
+        conditions.append(f"{no}{c.signal}{value}")
+    held = f" for {guard.hold_s:g} s" if guard.hold_s else ""
+    return f"{', '.join(conditions)}{held}: `{guard.target}`"
+
+
+def _timeouts(mission: Mission) -> Iterator[str]:
+    if mission.timeouts:
+        yield from ("## Where time runs out", "", "| phase | why, and what helps |", "|---|---|")
+        for phase, why in mission.timeouts.items():
+            yield f"| `{phase}` | {why} |"
+        yield ""
+
+
+def _faults(mission: Mission, phases: tuple[Phase, ...]) -> Iterator[str]:
+    flown = [kind for kind in KINDS if any(p.kind == kind for p in phases)]
+    rows = {f: row for f, row in mission.faults.items() if any(row.get(kind, "-") != "-" for kind in flown)}
+    if rows:
+        yield from ("## Where a fault leads", "", f"| fault | {' | '.join(flown)} |", "|---" * (len(flown) + 1) + "|")
+        for fault, row in rows.items():
+            yield f"| `{fault}` | {' | '.join(row.get(kind, '-') for kind in flown)} |"
+        yield from ("", "Signs, remedies and trials: [faults.md](../faults.md).", "")
+
+
+def _criteria(mission: Mission) -> Iterator[str]:
+    if mission.criteria:
+        yield from ("## When it has succeeded", "", "| figure | bound | means |", "|---|---|---|")
+        for c in mission.criteria:
+            yield f"| {c.name.replace('_', ' ')} | {c.bound:g} {c.unit} | {c.meaning} |"
+        yield ""
