@@ -332,4 +332,4 @@ def test_name_inside_a_file_that_no_file_can_have_is_no_traceback(tmp_path, key,
 
 @pytest.mark.parametrize("overrides", [{"a": 2**70}, {"run": {"seed": float("inf")}}, {"title": "\ud800"}, {3: 4}])
 def test_override_that_no_file_could_hold_is_refused(overrides) -> None:
-    refusal("landing", overrides)
+    assert refusal("landing", overrides)
