@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from armland.scenario import load_scenario
+from armland.scenario.deviation import rows
 from armland.scenario.tree import HARDWARE
 
 MISSIONS = [("paper", "E3"), ("landing", "landing")]
@@ -163,3 +164,139 @@ def test_every_number_of_the_hardware_is_changed() -> None:
             return [path] if number and a == b else []
 
         assert same(json.loads(getattr(scenario, section).model_dump_json()), {**old, **new}, section) == []
+
+
+def keys(section):
+    """Keys of a section of the landing that hold numbers, with nested tables opened: paths and the numbers as they are, and changed."""
+    old, new = changed(load_scenario("landing"), section)
+
+    def opened(a, b, path):
+        for key in b:
+            if isinstance(b[key], dict):
+                yield from opened(a[key], b[key], (*path, key))
+            elif a.get(key) != b[key]:
+                yield (*path, key), a.get(key), b[key]
+
+    yield from opened(old, new, (section,))
+
+
+def nested(path, value):
+    for key in reversed(path):
+        value = {key: value}
+    return value
+
+
+NUMBERS = [found for section in HARDWARE for found in keys(section)]
+ROWS = [(row.path, row.told.high or row.told.low) for row in rows()]
+
+
+def with_row(scenario, path, number):
+    return scenario.replaced({"deviation": nested(path.split("."), [number, number])})
+
+
+def differently(scenario, kind):
+    """Scenarios of which the plant alone is another one, each in one number, by the name of that number."""
+    if kind == "deviation":
+        return {path: with_row(scenario, path, extreme) for path, extreme in ROWS}
+    if kind == "imperfections":
+        found = [((kind, key), value) for key, value in changed(scenario, kind)[1].items()]
+        found += [(("disturbance", "force_n"), [1.0, 2.0, 3.0]), (("disturbance", "torque_nm"), [0.1, 0.2, 0.3])]
+        return {".".join(path): scenario.replaced(nested(path, value)) for path, value in found}
+    return {
+        ".".join(path): scenario.replaced({**nested(path, new), "belief": nested(path, old)})
+        for path, old, new in NUMBERS
+    }
+
+
+@pytest.mark.parametrize("kind", ["deviation", "imperfections", "hardware"])
+def test_belief_is_the_same_whichever_number_of_the_plant_is_another(kind) -> None:
+    """All that a controller is planned from: `plan` takes nothing else of a scenario."""
+    scenario = load_scenario("landing")
+    plain = scenario.believed().model_dump_json()
+    assert [
+        name for name, other in differently(scenario, kind).items() if other.believed().model_dump_json() != plain
+    ] == []
+
+
+def test_belief_follows_each_of_its_own_numbers() -> None:
+    """Negative control: without the belief held where it was, each number of the hardware is believed as well."""
+    scenario = load_scenario("landing")
+    plain = scenario.believed().model_dump_json()
+    for path, _, new in NUMBERS:
+        assert scenario.replaced(nested(path, new)).believed().model_dump_json() != plain, path
+
+
+def first_tick(scenario, measured=None):
+    """Command and truth of the first tick, and what was measured then; `measured` replaces that for the controller."""
+    from armland.experiments.episode import prepare
+
+    flight = prepare(scenario, "landing")
+    tick = flight.controller.tick
+    flight.simulator.connect()
+    flight.simulator.read(tick)
+    seen, truth = tick.measurement.copy(), tick.truth.copy()
+    if measured is not None:
+        tick.measurement[:] = measured
+    flight.controller.update(tick)
+    return tick.command.tobytes(), truth.tobytes(), seen
+
+
+@pytest.fixture(scope="module")
+def first():
+    return first_tick(load_scenario("landing"))
+
+
+def test_first_command_is_the_same_in_another_plant(first) -> None:
+    """All hardware and imperfections changed, every deviation at twice its range; what is measured is the same."""
+    scenario = real(load_scenario("landing"), HARDWARE).replaced(
+        {"deviation": {"level": "harsh"}, "imperfections": changed(load_scenario("landing"), "imperfections")[1]}
+    )
+    command, truth, _ = first_tick(scenario, first[2])
+    assert command == first[0]
+    # Negative control: it is another plant.
+    assert truth != first[1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("path", "extreme"), ROWS)
+def test_first_command_is_the_same_whichever_row_deviates(first, path, extreme) -> None:
+    assert first_tick(with_row(load_scenario("landing"), path, extreme), first[2])[0] == first[0]
+
+
+def test_first_command_follows_the_belief(first) -> None:
+    """Negative control: a tool that is believed to be heavier is held by other torques."""
+    scenario = load_scenario("landing")
+    mass = scenario.tool.tool_mass_kg
+    heavier = scenario.replaced({"belief": {"tool": {"tool_mass_kg": 1.01 * mass}}})
+    command, truth, _ = first_tick(heavier, first[2])
+    assert command != first[0]
+    assert truth == first[1]
+
+
+def first_truth(scenario, start):
+    """Truth and measurement at tick 0 of the plant alone, its arm where the landing's waits."""
+    from armland.plant.simulator import Simulator
+    from armland.records import Tick
+
+    simulator = Simulator(scenario, np.deg2rad(scenario.place.home_deg), start)
+    tick = Tick(simulator.scene.joints)
+    simulator.connect()
+    simulator.read(tick)
+    return tick.truth.tobytes() + tick.measurement.tobytes() + simulator.world.tobytes()
+
+
+@pytest.mark.parametrize("start", ["air", "cradle"])
+def test_first_truth_is_the_same_whatever_is_believed(start) -> None:
+    scenario = load_scenario("landing", {"deviation": {"level": "published"}})
+    plain = first_truth(scenario, start)
+    assert [s for s in HARDWARE if first_truth(believed(scenario, [s]), start) != plain] == []
+    # Negative control: real, and not believed, the same numbers show, but for gear that nothing touches or moves as yet.
+    same = {s for s in HARDWARE if first_truth(scenario.replaced({s: changed(scenario, s)[1]}), start) == plain}
+    assert same <= {"cradle", "hinge"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("path", "old", "new"), NUMBERS)
+def test_first_truth_is_the_same_whichever_number_is_believed_otherwise(path, old, new) -> None:
+    scenario = load_scenario("landing", {"deviation": {"level": "published"}})
+    assert first_truth(scenario.replaced({"belief": nested(path, new)}), "air") == first_truth(scenario, "air")

@@ -137,6 +137,10 @@ def test_bad_scenario_is_one_message_exit_code_2_and_nothing_written(name: str, 
         (("--seed", "-1"), ["--seed"]),
         (("--law", "exact"), ["--compare", "armland run E3 --law exact"]),
         (("--compare", "--law", "nowhere.py:law"), ["nowhere.py"]),
+        (("--factorial",), ["--factorial needs --compare"]),
+        (("--compare", "--factorial", "--law", "exact"), ["leave --law out"]),
+        (("--spread", "4", "--scenario", "compare"), ["--spread", "paper_bench", "leave"]),
+        (("--spread", "1"), ["--spread"]),
     ],
 )
 def test_bad_option_is_one_message_and_exit_code_2(args: tuple[str, ...], words: list[str], tmp_path: Path) -> None:

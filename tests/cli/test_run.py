@@ -48,7 +48,10 @@ def test_landing_leaves_result_log_and_figures(armland, tmp_path):
     log = read_log(tmp_path / "out" / "landing.mcap")
     assert log.complete
     assert {k: log.metadata[k] for k in ("mission", "seed")} == {"mission": "landing", "seed": "3"}
-    assert json.loads(log.metadata["overrides"]) == {"imperfections": {"hover_noise_m": 0.005}}
+    assert json.loads(log.metadata["overrides"]) == {
+        "deviation": {"level": "published"},
+        "imperfections": {"hover_noise_m": 0.005},
+    }
     assert log.attachments["scenario.toml"] == (SCENARIOS / "landing.toml").read_bytes()
     assert tuple(log.metadata["faults"].split(",")) == FAULTS
     # A reader who knows nothing but the log finds the phases that were flown.
@@ -185,7 +188,7 @@ BAD = {
     ),
     "start inside the arm": (
         sets("place.start_above_m=0.0", "place.start_offset_m=[0.1, 0.1, 0.3]"),
-        ["place.start_above_m = 0 ", "less than 0.05 m beside", "from 0.3"],
+        ["place.start_above_m = 0 ", "less than 0.05 m beside", "from 0.27"],
     ),
     "start out of sight": (sets("place.start_above_m=2.5"), ["2.5", "does not see its marker", "would do"]),
     "start box too wide": (sets("place.start_offset_m=[0.9, 0.9, 0.1]"), ["start_offset_m", "would do"]),
@@ -198,7 +201,7 @@ BAD = {
         sets("uav.extra_mass_kg=0.5", "magnet.rating_n=5.0"),
         ["rotors give 7.44 N", "loaded with 3.0 N"],
     ),
-    "too heavy for the arm": (sets(*HEAVY), ["joint A2 would need 191 N·m", "0.9 of its limit is 158 N·m"]),
+    "too heavy for the arm": (sets(*HEAVY), ["joint A2 would need 190 N·m", "0.9 of its limit is 158 N·m"]),
     "two contradictions at once": (
         sets("bounds.lost_offset_m=0.001", "bounds.pull_seen_n=2.0"),
         ["2 problems", "lost_offset_m = 0.001", "pull_seen_n = 2"],

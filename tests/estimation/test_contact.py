@@ -20,7 +20,7 @@ FIELDS = ("arm_share", "rotor_share", "ground_share", "contact", "touchdown", "r
 def observed(force, thrust, magnet, retreat, p, s, load):
     out = np.empty((len(force), 7))
     for k in range(len(force)):
-        detect(force[k], thrust[k], magnet[k], retreat[k], p[0], s[0], load[0])
+        detect(force[k], thrust[k], WEIGHT, magnet[k], retreat[k], p[0], s[0], load[0])
         o = load[0]
         out[k, 0], out[k, 1], out[k, 2] = o.arm_share, o.rotor_share, o.ground_share
         out[k, 3], out[k, 4], out[k, 5], out[k, 6] = o.contact, o.touchdown, o.resting, o.released
@@ -47,7 +47,7 @@ def watch(force, thrust=0.0, magnet=True, retreat=0.0, settings=SETTINGS, noise=
         np.broadcast_to(np.asarray(a, d), ticks).copy() for a, d in ((thrust, float), (magnet, bool), (retreat, float))
     ]
     # `model_dump` gives tables, as a scenario's file has them.
-    p = told(load_scenario("landing", {"estimation": {"contact": settings.model_dump()}}), WEIGHT)
+    p = told(load_scenario("landing", {"estimation": {"contact": settings.model_dump()}}))
     out = observed(low_passed(force + white, gain), *series, p, np.zeros(1, kept_layout()), np.zeros(1, load_layout()))
     return dict(zip(FIELDS, out.T, strict=True))
 

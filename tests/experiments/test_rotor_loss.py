@@ -45,7 +45,7 @@ def test_uav_stays_on_the_arm_whichever_rotor_is_lost(phase, rotor):
     check_held(lose(phase, rotor), state="standing" if phase == "lift" else "held")
 
 
-def test_topples_without_balancing(monkeypatch):
+def test_leans_on_the_hinges_stops_without_balancing(monkeypatch):
     # The same end, but the arm holds still.
     mission = MISSIONS["landing"]
 
@@ -55,8 +55,8 @@ def test_topples_without_balancing(monkeypatch):
     monkeypatch.setitem(MISSIONS, "landing", mission._replace(phases=still))
     episode = lose("carry")
     assert tilt_deg(since(episode)["quat"]).max() > 40.0
-    assert episode.judgement.state == "lost"
-    assert "the UAV is lost: it has toppled" in episode.judgement.reason
+    assert tilt_deg(since(episode)["quat"])[-250:].min() > 25.0
+    assert episode.judgement.state == "held"
 
 
 @pytest.mark.slow
@@ -74,8 +74,9 @@ def test_uav_near_the_rails_is_set_down(phase, after_s, rotor):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("rotor", [1, 3])
-def test_ground_alone_saves_it_where_the_arm_carries_half(rotor):
-    check_held(lose("carry", rotor, onboard={"rotor_watch": 0.0}), tilt=12.0)
+def test_without_the_uavs_word_a_lost_rotor_is_a_lean_like_another(rotor):
+    j = lose("carry", rotor, onboard={"rotor_watch": 0.0}).judgement
+    assert (j.fault, j.state) == ("uav_tilt", "standing")
 
 
 @pytest.mark.slow
@@ -83,9 +84,11 @@ def test_begin_of_the_hand_over_needs_the_watch_on_board():
     assert tilt_deg(since(lose("hand_over", onboard={"rotor_watch": 0.0}))["quat"]).max() > 40.0
 
 
-def test_lost_in_flight_the_uav_falls_beside_an_arm_that_draws_back_and_the_reason_says_so():
+def test_lost_in_flight_the_uav_falls_and_the_reason_says_so():
     j = lose("guide").judgement
     assert (j.end, j.state) == ("abort", "lost")
-    assert j.limits_violated == []
+    # The arm can only draw back; what falls may strike it and the rails.
+    assert {"uav_fell", "uav_touched_cradle"} <= set(j.limits_violated)
+    assert j.reason.startswith("limits violated: uav_touched_cradle (in guide at ")
     assert "the UAV is lost: it fell" in j.reason
     assert "flies" not in j.reason

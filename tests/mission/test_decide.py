@@ -6,7 +6,7 @@ import pytest
 from armland.mission.decide import decide, enter, fill_signals, load_expected
 from armland.mission.supervisor.table import FAULT
 from armland.mission.table.phases import SIGNAL
-from armland.rotations import from_rotation_vector
+from armland.rotations import from_rotation_vector, multiply
 
 
 def signals(bench, elapsed=0.7):
@@ -22,7 +22,7 @@ def test_signals_are_what_their_names_say(bench):
     e["thrust"], e["arm_share"], e["ground_share"] = 2.5, 0.3, 0.6
     bench.kept["refer"]["r"], bench.kept["refer"]["progress"] = station, 0.4
     bench.kept["decide"]["grip"], bench.kept["decide"]["retries"] = station, 2
-    bench.kept["estimate"]["load"]["contact"] = 1
+    bench.kept["estimate"]["load"]["contact"], bench.kept["estimate"]["grip"] = 1, [0.003, 0.004, -0.02]
     found = signals(bench)
     expected = {
         "progress": 0.4,
@@ -43,6 +43,7 @@ def test_signals_are_what_their_names_say(bench):
         "arm_error": 0.02,
         "retries": 2.0,
         "rotors": 2.5,
+        "image_offset": 0.005,
     }
     for name, value in expected.items():
         assert found[name] == pytest.approx(value), name
@@ -85,7 +86,7 @@ def test_bias_is_known_after_three_blocks(bench, blocks, known):
 def test_force_is_explained_where_arm_cradle_and_rotors_leave_no_doubt(bench, phase, elapsed, height, expected):
     weight = bench.told["decide"]["weight"][0]
     bench.e["thrust"], bench.e["r"][0, 2] = 0.5 * weight, height
-    force = load_expected(bench.enter(phase), elapsed, bench.e[0], bench.told["decide"][0], weight)
+    force = load_expected(bench.enter(phase), elapsed, bench.e[0], weight, weight, bench.told["decide"][0])
     if expected is None:
         assert np.isnan(force)
     else:
@@ -97,7 +98,7 @@ def test_while_the_hinge_is_freed_the_thrust_that_was_asked_for_explains_the_for
     bench.e["thrust"] = 0.8 * weight
     row = bench.enter("hand_back")
     # The command that carries the weight is being found out: it says nothing.
-    assert load_expected(row, 0.1, bench.e[0], bench.told["decide"][0], 1.0) == pytest.approx(0.2 * weight)
+    assert load_expected(row, 0.1, bench.e[0], 1.0, weight, bench.told["decide"][0]) == pytest.approx(0.2 * weight)
 
 
 def test_capture_begins_without_a_disturbance_and_with_the_arms_own_motion(bench):
@@ -108,7 +109,6 @@ def test_capture_begins_without_a_disturbance_and_with_the_arms_own_motion(bench
     np.testing.assert_array_equal(bench.kept["estimate"]["observer"]["force"], 0.0)
     np.testing.assert_array_equal(bench.kept["act"]["force"], 0.0)
     assert bench.kept["estimate"]["observer"]["begun"][0] == 0
-    assert bench.kept["decide"]["seen"]["caught"][0] == 1000
     np.testing.assert_array_equal([bench.kept["refer"]["r0"][0], bench.kept["refer"]["v0"][0]], [[0.6] * 3, [0.1] * 3])
 
 
@@ -237,10 +237,9 @@ def test_disturbance_is_forgotten_only_where_the_uav_is_caught(bench):
     observer = bench.kept["estimate"]["observer"]
     for before, after, kept in (("guide", "approach", True), ("hand_over", "carry", True), ("close", "capture", False)):
         bench.enter(before)
-        observer["force"], bench.kept["decide"]["seen"]["caught"] = 1.0, 7
+        observer["force"] = 1.0
         enter(bench.plan.number(after), 1000, bench.b)
         assert observer["force"].all() == kept, before
-        assert bench.kept["decide"]["seen"]["caught"][0] == (7 if kept else 1000)
 
 
 def test_phase_that_is_no_miss_is_no_retry(bench):
@@ -254,14 +253,33 @@ def test_phase_that_is_no_miss_is_no_retry(bench):
 def test_force_counts_as_unexplained_only_after_the_whole_of_its_time(bench, phase, elapsed):
     row, p = bench.enter(phase), bench.told["decide"][0]
     weight = p["weight"]
-    assert np.isnan(load_expected(row, elapsed - 0.01, bench.e[0], p, weight))
-    assert load_expected(row, elapsed + 0.01, bench.e[0], p, weight) == 0.0
+    assert np.isnan(load_expected(row, elapsed - 0.01, bench.e[0], weight, weight, p))
+    assert load_expected(row, elapsed + 0.01, bench.e[0], weight, weight, p) == 0.0
 
 
 def test_what_the_rotors_leave_is_by_the_command_that_carries_the_weight(bench):
     """A command of 4 N is said to carry 5 N: at 1 N a quarter is carried; where nothing is known of it, all is."""
     row, p = bench.enter("carry"), bench.told["decide"][0]
     bench.e["thrust"], bench.e["r"][0, 2] = 1.0, 0.8
-    assert load_expected(row, 0.1, bench.e[0], p, 4.0) == pytest.approx(0.75 * p["weight"])
+    assert load_expected(row, 0.1, bench.e[0], 4.0, 5.0, p) == pytest.approx(0.75 * 5.0)
     bench.e["thrust"] = 0.0
-    assert load_expected(row, 0.1, bench.e[0], p, 0.0) == pytest.approx(p["weight"])
+    assert load_expected(row, 0.1, bench.e[0], 0.0, 5.0, p) == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize(("before", "after", "anew"), [("miss", "guide", True), ("guide", "approach", False)])
+def test_zero_of_the_force_sensor_is_learnt_anew_after_a_contact(bench, before, after, anew):
+    bench.enter(before)
+    bench.kept["estimate"]["wrench"]["blocks"] = 5
+    enter(bench.plan.number(after), 1000, bench.b)
+    assert bench.kept["estimate"]["wrench"]["blocks"][0] == (0 if anew else 5)
+
+
+@pytest.mark.parametrize("asked", [(0.0, 0.0, 0.0), (0.1, 0.0, 0.5)])
+def test_lean_is_the_angle_to_the_attitude_that_was_asked_for(bench, asked):
+    """Of the z axes alone: a heading is no lean, and a UAV that holds against the wind as it shall leans by nothing."""
+    q_d = from_rotation_vector(np.array(asked))
+    bench.kept["act"]["q_d"] = q_d
+    bench.e["quat"][0] = multiply(q_d, from_rotation_vector(np.array([0.0, 0.0, 0.7])))
+    assert signals(bench)["lean"] == pytest.approx(0.0, abs=1e-5)
+    bench.e["quat"][0] = multiply(q_d, from_rotation_vector(np.array([0.0, np.deg2rad(4.0), 0.0])))
+    assert signals(bench)["lean"] == pytest.approx(4.0)

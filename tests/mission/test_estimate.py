@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from armland.mission.estimate import SINGULARITY_PERIOD, acting_thrust, estimate, estimate_arm, predict_torque, screen
+from armland.mission.estimate import (
+    SINGULARITY_PERIOD,
+    acting_thrust,
+    estimate,
+    estimate_arm,
+    learn_uplink,
+    predict_torque,
+    screen,
+)
 from armland.mission.reference.moves import LAUNCH
 from armland.rotations import from_rotation_vector
 
@@ -122,3 +130,57 @@ def test_thrust_is_remembered_for_as_long_as_it_travels(bench):
     s["thrust_log"][0, 2000 % 256] = 1.0
     assert acting_thrust(2024, p[0], s[0]) == 0.0
     assert acting_thrust(2025, p[0], s[0]) == pytest.approx(1.0 - np.exp(-0.02))
+
+
+def learnt_uplink(bench, late, seconds=4.0, period=5):
+    """Delay in ticks that is learnt of a UAV whose newest command is `late()` ticks old in each of its samples."""
+    p, s, m = bench.told["estimate"], bench.kept["estimate"], bench.m
+    for tick in range(1000, 1000 + round(seconds * 1000), period):
+        m["uav_tick"], m["uav_echo"] = tick, tick - late()
+        # Between samples the same one is seen again: it says nothing new.
+        for _ in range(2):
+            learn_uplink(m[0], p[0], s[0])
+    return float(s["uplink"][0])
+
+
+@pytest.mark.parametrize("late", [0, 25, 100, 255])
+def test_delay_of_the_uplink_is_learnt_from_the_echoes(bench, late):
+    """Within e⁻⁸ of the difference after eight time constants of 0.5 s."""
+    assert learnt_uplink(bench, lambda: late) == pytest.approx(late, abs=0.12)
+
+
+def test_delay_of_the_uplink_is_learnt_with_its_time_constant(bench):
+    bench.kept["estimate"]["uplink"], bench.kept["estimate"]["echoed"] = 25.0, 995
+    assert learnt_uplink(bench, lambda: 100, 0.5) == pytest.approx(25.0 + 75.0 * (1.0 - np.exp(-1.0)), abs=0.5)
+
+
+def test_delay_that_jitters_is_learnt_as_its_mean(bench):
+    """Uniform from 25 to 45 ticks: the mean to within four deviations of a filter of gain g, σ √(g/2)."""
+    rng = np.random.default_rng(1)
+    sigma = np.sqrt((21**2 - 1) / 12.0)
+    found = learnt_uplink(bench, lambda: 25 + int(rng.integers(0, 21)))
+    assert found == pytest.approx(35.0, abs=4.0 * sigma * np.sqrt(0.5 * 5e-3 / 0.5) + 0.01)
+
+
+@pytest.mark.parametrize(("late", "found"), [(5000, 255.0), (-50, 0.0)])
+def test_delay_of_the_uplink_stays_within_what_the_log_holds(bench, late, found):
+    """Stamps of another clock may say anything."""
+    assert learnt_uplink(bench, lambda: late, seconds=8.0) == pytest.approx(found, abs=0.1)
+
+
+def test_delay_of_the_uplink_is_as_believed_where_it_may_not_be_learnt_or_nothing_was_heard(bench):
+    bench.kept["estimate"]["uplink"] = 25.0
+    bench.told["estimate"]["learns"] = 0
+    assert learnt_uplink(bench, lambda: 100) == 25.0
+    bench.told["estimate"]["learns"] = 1
+    bench.kept["estimate"]["echoed"] = 0
+    assert learnt_uplink(bench, lambda: 10**6) == 25.0
+
+
+def test_thrust_acts_after_the_delay_that_was_learnt(bench):
+    p, s = bench.told["estimate"], bench.kept["estimate"]
+    learnt_uplink(bench, lambda: 100)
+    s["thrust_log"], s["acting"] = 0.0, 0.0
+    s["thrust_log"][0, 2000 % 256] = 1.0
+    assert acting_thrust(2099, p[0], s[0]) == 0.0
+    assert acting_thrust(2100, p[0], s[0]) > 0.0

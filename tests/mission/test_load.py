@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from armland.mission.load import estimate_load, observe
+from armland.mission.load import estimate_load, feel_nod, observe, weigh
 from armland.rotations import from_rotation_vector, matrix
 
 TURN = np.array([0.2, -0.1, 0.4])
@@ -151,3 +151,93 @@ def test_gravity_that_the_observer_knows_is_that_at_the_centre_of_mass(bench):
     for _ in range(30):
         observe(bench.b, True)
     np.testing.assert_allclose(bench.e["disturbance"][0], 0.0, atol=1e-9)
+
+
+def weighed(bench, real, rotors, seconds, force=None):
+    """Weight that is found, as a share of the believed, of a UAV that weighs `real` of it and hangs with `rotors` of it carried."""
+    p, s = bench.told["estimate"], bench.kept["estimate"]
+    weight = p["weight"][0]
+    for _ in range(round(seconds * 1000)):
+        weigh(real * weight * (1.0 - rotors) if force is None else force, rotors, p[0], s[0])
+    return s["weight"][0] / weight
+
+
+@pytest.mark.parametrize("real", [0.8, 0.93, 1.0, 1.2])
+@pytest.mark.parametrize("rotors", [0.0, 0.5])
+def test_weight_of_the_held_uav_is_found(bench, real, rotors):
+    """F/(1 − share of the rotors), within e⁻⁵ of the difference after five time constants of 0.3 s."""
+    assert weighed(bench, real, rotors, 1.5) == pytest.approx(real, abs=1.1 * np.exp(-5.0) * abs(real - 1.0) + 1e-9)
+
+
+def test_weight_is_found_with_its_time_constant(bench):
+    assert weighed(bench, 1.2, 0.5, 0.3) - 1.0 == pytest.approx(0.2 * (1.0 - np.exp(-1.0)), rel=5e-3)
+
+
+@pytest.mark.parametrize(("real", "rotors"), [(0.0, 0.0), (0.5, 0.0), (1.5, 0.5), (1.2, 0.8)])
+def test_lost_load_blow_or_uav_that_flies_is_no_weight(bench, real, rotors):
+    """Of a lost load the force is nothing, of a blow too much; where rotors carry most, what is left says nothing."""
+    assert weighed(bench, real, rotors, 3.0) == 1.0
+
+
+def test_weight_that_was_found_stays_when_the_load_is_lost(bench):
+    found = weighed(bench, 1.2, 0.5, 3.0)
+    assert weighed(bench, 0.0, 0.5, 3.0) == found
+
+
+@pytest.mark.parametrize(
+    ("phase", "height", "fresh", "learns"),
+    [
+        ("carry", 0.1, True, True),
+        ("hand_over", 0.1, True, True),
+        ("carry", -0.01, True, False),
+        ("carry", 0.1, False, False),
+        ("guide", 0.1, True, False),
+        ("set_down", 0.1, True, False),
+    ],
+)
+def test_weight_is_learnt_only_where_the_uav_hangs_clear_of_the_cradle(bench, phase, height, fresh, learns):
+    weight = bench.told["estimate"]["weight"][0]
+    bench.enter(phase)
+    bench.kept["act"]["hover"], bench.e["thrust"] = weight, 0.5 * weight
+    bench.e["r"][0, 2] = bench.told["decide"]["clear_z"][0] + height
+    bench.m["wrench"] = reading(bench, np.array([0.0, 0.0, 0.6 * weight]), np.zeros(3))
+    if not fresh:
+        bench.m["wrench_tick"] -= bench.told["estimate"]["wrench_age"][0] + 1
+    estimate_load(False, True, 0.0, bench.b)
+    assert (bench.kept["estimate"]["weight"][0] > weight) == learns
+
+
+def test_share_of_the_rotors_counts_by_what_really_carries_the_weight(bench):
+    """Rotors that give 80 % are asked for weight/0.8 in hover: half of that carries half of it and not 0.62."""
+    weight = bench.told["estimate"]["weight"][0]
+    bench.kept["act"]["hover"], bench.e["thrust"] = weight / 0.8, 0.5 * weight / 0.8
+    bench.m["wrench"] = reading(bench, np.array([0.0, 0.0, 0.5 * weight]), np.zeros(3))
+    estimate_load(False, True, 0.0, bench.b)
+    assert bench.e["ground_share"][0] == pytest.approx(0.0, abs=1e-9)
+
+
+def nodded(bench, gain, bias=(0.0, 0.0, 0.0), noise=0.0):
+    """Force found over force expected (3,) after a nod, of a sensor with `gain` and `bias`, N, W, on a turned tool."""
+    rng, mass = np.random.default_rng(1), bench.told["estimate"]["wrench"]["mass"][0]
+    R = matrix(from_rotation_vector(TURN))
+    bench.board["arm"]["rotation"] = R
+    for k in range(500):
+        a = np.array([1.5, 1.2, 1.8]) * np.sin(2.0 * np.pi * k / 500)
+        bench.kept["refer"]["a"] = a
+        force = gain * mass * (a + [0.0, 0.0, 9.81]) + bias
+        bench.m["wrench"][0, :3] = R.T @ force + noise * rng.standard_normal(3)
+        feel_nod(bench.m[0], bench.b)
+    return bench.kept["estimate"]["nod"]["gain"][0].copy()
+
+
+@pytest.mark.parametrize("gain", [1.0, 0.0, -1.0, 1.6])
+def test_nod_tells_the_gain_of_the_force_sensor_whatever_its_bias(bench, gain):
+    np.testing.assert_allclose(nodded(bench, gain, bias=(3.0, -2.0, 1.0)), gain, atol=1e-6)
+
+
+def test_noise_of_the_force_sensor_leaves_its_gain_within_the_slopes_error(bench):
+    """σ/(m √Σa²), with Σa² = 250 A² of the sines: five of them."""
+    error = 0.05 / (bench.told["estimate"]["wrench"]["mass"][0] * np.sqrt(250.0) * np.array([1.5, 1.2, 1.8]))
+    found = nodded(bench, 1.0, noise=0.05)
+    assert (np.abs(found - 1.0) < 5.0 * error).all()
+    assert (error < 0.01).all()

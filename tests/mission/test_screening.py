@@ -10,8 +10,9 @@ from armland.rotations import from_rotation_vector
 LEAP, ATTITUDE_LEAP = 0.05, 0.15
 
 
-def screen(m, good, held=False, joint_leap=LEAP, attitude_leap=ATTITUDE_LEAP):
-    return screened(m[0], good[0], held, joint_leap, attitude_leap, 1e-3)
+def screen(m, good, held=False, joint_leap=LEAP, attitude_leap=ATTITUDE_LEAP, same=None):
+    same = np.zeros(7, np.int64) if same is None else same
+    return screened(m[0], good[0], same, held, joint_leap, attitude_leap, 1e-3)
 
 
 def measurement(tick=100):
@@ -140,3 +141,34 @@ def test_attitude_may_go_as_far_as_twice_its_rates_explain(ticks, believed):
     m["uav_quat"][0] = from_rotation_vector(np.array([0.0, 0.0, 0.4]))
     screen(m, good, True)
     assert (m["uav_tick"][0] == 100 + ticks) == believed
+
+
+def test_joint_that_repeats_one_reading_at_rest_is_counted_and_its_neighbours_are_not():
+    """Frozen: the same to the last digit, and no speed. One that stands still by chance, or moves through, begins anew."""
+    good, same = np.zeros(1, layout("measurement", 7)), np.zeros(7, np.int64)
+    for k in range(5):
+        m = measurement(100 + k)
+        m["q"], m["qd"] = 1e-4 * k, 1e-3
+        m["q"][0, 2], m["qd"][0, 2] = 0.3, 0.0
+        m["q"][0, 4] = 0.3
+        screen(m, good, same=same, joint_leap=1.0)
+    np.testing.assert_array_equal(same, [0, 0, 4, 0, 0, 0, 0])
+    m["arm_tick"], m["q"][0, 2] = 110, 0.3 + 1e-9
+    screen(m, good, same=same, joint_leap=1.0)
+    assert not same.any()
+
+
+def test_sample_that_is_seen_again_is_not_counted_again():
+    good, same = np.zeros(1, layout("measurement", 7)), np.zeros(7, np.int64)
+    for k in range(5):
+        m = measurement(100)
+        m["tick"] = 100 + k
+        screen(m, good, same=same)
+    assert same.max() <= 1
+
+
+def test_stamp_from_the_future_is_one_of_now():
+    good, m = np.zeros(1, layout("measurement", 7)), measurement(100)
+    m["uav_tick"] = 130
+    assert screen(m, good) == 0
+    assert m["uav_tick"] == 100

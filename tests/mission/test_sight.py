@@ -8,6 +8,8 @@ from armland.mission.sight import estimate_plate, known_push, lift_of, look_at_g
 from armland.mission.table.phases import MAGNET, UAV
 from armland.rotations import conjugate, from_rotation_vector, matrix, multiply
 
+LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
+
 
 @pytest.mark.parametrize("turn", [[0.1, -0.2, 0.3], [3.0, 0.2, 0.0], [0.0, 3.1, 0.1], [0.0, 0.1, 3.1]])
 def test_quaternion_of_a_rotation(turn):
@@ -23,6 +25,8 @@ def see(bench, plate, arm, uav):
     m["camera_fresh"], m["camera_capture"] = 1, 77
     m["camera_position"] = R_e.T @ marker - p["camera"][0]
     m["camera_quat"] = multiply(conjugate(arm), multiply(uav, p["filter"]["marker_quat"][0].copy()))
+    known = bench.kept["estimate"]["filter"]
+    known["align"]["quat"], known["quat"][0, 77], known["camera_quat"][0, 77] = [1.0, 0.0, 0.0, 0.0], uav, arm
 
 
 @pytest.mark.parametrize("offset", [(0.0, 0.0, 0.0), (0.012, 0.0, 0.0), (0.004, -0.006, 0.003)])
@@ -31,10 +35,44 @@ def test_offset_on_the_magnet_depends_on_nothing_but_the_plates_place(bench, off
     for _ in range(5):
         arm, uav = from_rotation_vector(rng.normal(0, 0.5, 3)), from_rotation_vector(rng.normal(0, 0.3, 3))
         see(bench, np.array(offset), arm, uav)
+        # It has been there for long: images are smoothed.
+        s["grip"][0] = matrix(arm).T @ np.array(offset)
         look_at_grip(bench.m[0], bench.told["estimate"][0], s[0])
         assert s["grip_offset"][0] == pytest.approx(np.linalg.norm(offset), abs=1e-12)
         assert s["grip_tick"][0] == 77
     assert s["grip_far"][0] == (5 if np.linalg.norm(offset) > bench.plan.scenario.limits.slip_m else 0)
+
+
+def test_tilt_that_the_camera_makes_of_the_marker_moves_no_plate_on_the_magnet(bench):
+    """It is by the fused attitude: the marker's own tilt is what a camera sees worst."""
+    s = bench.kept["estimate"]
+    see(bench, np.array([0.004, 0.0, 0.0]), LEVEL, LEVEL)
+    s["grip"][0] = [0.004, 0.0, 0.0]
+    for tilt in (0.0, 0.3):
+        bench.m["camera_quat"] = multiply(
+            bench.m["camera_quat"][0].copy(), from_rotation_vector(np.array([tilt, 0.0, 0.0]))
+        )
+        look_at_grip(bench.m[0], bench.told["estimate"][0], s[0])
+        assert s["grip_offset"][0] == pytest.approx(0.004, abs=1e-12)
+    # The alignment between the UAV's idea of the world and the deck counts.
+    lever = bench.told["estimate"]["lever"][0] - bench.told["estimate"]["filter"]["marker_offset"][0]
+    s["filter"]["align"]["quat"] = from_rotation_vector(np.array([0.0, 0.1, 0.0]))
+    moved = np.array([0.004, 0.0, 0.0]) + matrix(from_rotation_vector(np.array([0.0, 0.1, 0.0]))) @ lever - lever
+    s["grip"][0] = moved
+    look_at_grip(bench.m[0], bench.told["estimate"][0], s[0])
+    assert s["grip_offset"][0] == pytest.approx(np.linalg.norm(moved), abs=1e-12)
+
+
+@pytest.mark.parametrize(("noise", "sigmas", "far"), [(1.0, 2.9, 0), (1.0, 3.1, 1), (9.0, 8.9, 0), (9.0, 9.1, 1)])
+def test_plate_is_far_off_only_beyond_what_the_cameras_noise_explains(bench, noise, sigmas, far):
+    """Three standard deviations of what the noise really is, learnt in flight, beyond the slip."""
+    s, sigma = bench.kept["estimate"], 5e-4
+    bench.m["camera_sigma"][0, :3], s["filter"]["noise"] = sigma, noise
+    offset = bench.plan.scenario.limits.slip_m + sigmas * np.sqrt(3.0) * sigma
+    see(bench, np.array([offset, 0.0, 0.0]), LEVEL, LEVEL)
+    s["grip"][0] = [offset, 0.0, 0.0]
+    look_at_grip(bench.m[0], bench.told["estimate"][0], s[0])
+    assert s["grip_far"][0] == far
 
 
 def test_tick_without_an_image_says_nothing_of_the_grip(bench):
@@ -187,8 +225,11 @@ def test_drag_brakes_along_the_deck_and_not_upwards(bench, axis):
 
 
 def test_images_that_show_the_plate_in_its_place_end_the_row_of_those_that_do_not(bench):
-    s, level = bench.kept["estimate"], np.array([1.0, 0.0, 0.0, 0.0])
-    for offset, far in ((0.02, 1), (0.02, 2), (0.005, 0), (0.02, 1)):
-        see(bench, np.array([0.0, offset, 0.0]), level, level)
+    """Images are smoothed: a single one that is far off starts no row, a plate that stays far off does."""
+    s, found = bench.kept["estimate"], []
+    for away in (0.02, 0.0, 0.0, 0.02, 0.02, 0.02, 0.02, 0.0, 0.0):
+        see(bench, np.array([away, 0.0, 0.0]), LEVEL, LEVEL)
         look_at_grip(bench.m[0], bench.told["estimate"][0], s[0])
-        assert s["grip_far"][0] == far
+        found.append(int(s["grip_far"][0]))
+    # 0.4 of the first, then towards 20 mm: 8, 5, 3, 10, 14, 16, 18, 11, 6 mm.
+    assert found == [0, 0, 0, 0, 1, 2, 3, 4, 0]

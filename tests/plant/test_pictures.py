@@ -1,7 +1,9 @@
 """Pictures in place of the measurement model: each sample is that of its exposure, at the camera's rate, and late."""
 
 import numpy as np
+import pytest
 
+from armland.errors import ConfigurationError
 from armland.plant.devices.camera_numbers import SAMPLE
 from armland.plant.pictures import Pictures
 from armland.plant.simulator import Simulator
@@ -68,3 +70,10 @@ def test_simulator_delivers_pictures_at_the_cameras_rate_and_late(landing):
     numbers = [round(capture * 0.03) + 1 for _, capture, _ in arrivals]
     assert [value for *_, value in arrivals] == numbers
     assert numbers == [1, 2, 4, 5, 7, 8, 10, 11]
+
+
+def test_error_of_the_measurement_model_is_refused_on_pictures(landing):
+    home = np.deg2rad([-4.7, -110.0, -7.9, -71.4, 11.8, 39.3, -7.2])
+    with pytest.raises(ConfigurationError, match="camera_flip cannot act on pictures"):
+        Simulator(landing(faults=[{"kind": "camera_flip"}]), home, "air", photographer=Roll())
+    Simulator(landing(faults=[{"kind": "camera_frozen"}]), home, "air", photographer=Roll())

@@ -36,8 +36,10 @@ def test_foul_is_the_size_of_each_contact(bench_in_air):
     b = bench_in_air()
     for name, force in (("arm_cradle_force", [3, 0, 4]), ("arm_floor_force", [0, 0, 2]), ("arm_uav_force", [1, 2, 2])):
         b.put(name, force)
+    b.put("plate_cradle_force", [0, 6, 8])
+    b.put("ground_force", [2, 3, 6])
     b.read(0)
-    np.testing.assert_allclose(b.t["foul"][0], [5.0, 2.0, 3.0])
+    np.testing.assert_allclose(b.t["foul"][0], [5.0, 2.0, 3.0, 10.0, 7.0])
 
 
 def test_truth_carries_no_noise(bench):

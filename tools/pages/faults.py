@@ -1,5 +1,6 @@
 """The page `docs/faults.md`: what can fail, how it is seen, what happens then, and what trials in the plant measured."""
 
+from armland.mission.supervisor import faults as sign
 from armland.mission.supervisor.ends import FINALS, HINGED_FINALS
 from armland.mission.supervisor.faults import LOAD_LEFT, SEEN_S
 from armland.mission.supervisor.remedies import REMEDIES, STANDING
@@ -8,7 +9,7 @@ from armland.mission.table.phases import KINDS
 from armland.scenario.faults import Fault
 from armland.scenario.mission import Limits
 from pages.flights import Flight
-from pages.trials import OPEN, Trial
+from pages.trials import OPEN, OTHERWISE, Trial
 
 _HEAD = """\
 # Faults
@@ -40,11 +41,19 @@ _NOTES = """\
 - **A UAV that does not obey** is found as a force that load and thrust do not explain. It is held, and nothing else is decided: it
   cannot be put down with its rotors running. When it has stopped or listens again, a person takes it from there. On the cradle, without
   force in the hinge, it is released, and flies by itself.
-- **A UAV with a weak rotor** (70 %) is landed as any other; the take-off does not let it go, because it does not stand level: on one
-  seed in three it tumbled over the arm when it was.
+- **A UAV with a weak rotor** (70 %) is landed as any other; the take-off does not let it go, because it does not stand level.
+- **A lean is no fault while the UAV is held**: a gust, a blow and a push make a healthy one lean. What it says of its motors counts.
+- **A UAV without power is silent too.** Held, the hinge bears all its weight at once; it leans on the hinge's stops and stays there. In
+  flight it falls.
+- **A plate that sticks in the air pulls less than the UAV's thrust exceeds its weight**, too little to be felt: that it follows the arm
+  down is what shows. So does a UAV that has lost a quarter of its thrust while it hung on the arm; it is held again.
+- **Images that scatter by six times what is claimed** are mostly found as a leap: both make the filter begin anew.
+- **A force sensor that falls below what is expected while three images in a row are missing** passes for a load that is gone: the UAV
+  is let go, flying.
+- **A UAV that is shoved off a dead magnet while its rotors still carry it** leaves the camera's view before three images show it, and
+  so little load is expected then that its absence says nothing: it is lost.
 - **Brakes stop an arm that was struck within milliseconds**, hard enough for the plate to slide by 13 mm on the face (shear is a fifth
   of the pull); that slip is seen and the UAV let go, flying.
-- **A false report of the UAV's attitude while it is held** is not told from a real tilt; that cell belongs to the loss of a rotor.
 """
 
 
@@ -86,6 +95,21 @@ def signs() -> dict[str, str]:
     v = Limits()
     return {
         "non_finite": "any number in the measurement that is not finite",
+        "encoder_frozen": "a joint's position repeats bit by bit in two samples, its speed none, while samples arrive",
+        "power_lost": f"silent, and sinking at more than {sign.FALLS_MPS:g} m/s in view; or silent, and the hinge bears "
+        f"more than {sign.WEIGHT_FELT:g} of the weight where the rotors should carry a quarter or more",
+        "camera_leap": f"marker found elsewhere after images that could not be believed, for {sign.LEAPT_S:g} s; "
+        "never with a silent UAV",
+        "camera_noise": f"variance of the images above {sign.NOISY:g} times what the camera claims",
+        "wrench_wrong": f"force over the tool's inertia force outside {sign.WEIGHED[0]:g} to {sign.WEIGHED[1]:g} on any axis, "
+        f"{sign.WEIGHED_S:g} s into the self-test's nod",
+        "magnet_stuck": f"the magnet off for {sign.STUCK_S:g} s and the arm drawing back: above "
+        f"{sign.STUCK_N:g} N {1e3 * sign.STUCK_M:g} mm away, "
+        f"or the plate within {1e3 * sign.TOUCHES_M:g} mm after {1e3 * sign.FOLLOWED_M:g} mm",
+        "arm_blocked": f"end effector more than {1e3 * sign.BLOCKED_M:g} mm off its reference",
+        "thrust_lost": f"sinking at more than {sign.SINKS_MPS:g} m/s with {sign.STRAINS:g} times the hover thrust "
+        "or all of it; "
+        "or a UAV that hovers by itself near all that its rotors give",
         "arm_stale": f"joint sample older than {v.arm_age_ms:g} ms",
         "uav_silent": f"sample of the UAV, or the command that it had heard by then, older than {v.uav_age_ms:g} ms",
         "camera_stale": f"newest fused image older than {v.camera_age_ms:g} ms, once there was one",
@@ -93,9 +117,10 @@ def signs() -> dict[str, str]:
         "wrench_drift": f"vertical hinge force {v.unexplained_n:g} N off what load and thrust explain, where they do",
         "magnet_coil": f"coil current below what {v.magnet_share:g} of the rated pull needs, 0.15 s after it was switched on",
         "overload": f"hinge force above what healthy flights of the phase make, at most {v.hinge_force_share:g} of the magnet's rating",
-        "rotor_lost": f"tilt plus tilt rate over the rate of fall above {v.capture_deg:g}° while the UAV is held",
+        "rotor_lost": "the UAV says that a motor turns slower than it should, while it is held, heard, "
+        "and lies on the magnet",
         "uav_tilt": f"tilt above {v.tilt_deg:g}°",
-        "slip": f"plate more than {1e3 * v.slip_m:g} mm off in two images in a row; "
+        "slip": f"plate more than {1e3 * v.slip_m:g} mm off in three smoothed images in a row; "
         f"without an image of the last {1e3 * SEEN_S:g} ms, less than {LOAD_LEFT:g} of an expected load "
         f"above {v.load_gone_n:g} N; never with a silent UAV",
         "near_limit": f"joint within {v.joint_margin_rad:g} rad of its end, singular value below {v.sigma_min:g}, or joint speed "
@@ -123,7 +148,21 @@ def _words(f: Fault) -> str:
             return "UAV that does not obey"
         case "encoder_offset" | "attitude_offset":
             return f"{f.kind.replace('_', ' ')} of {f.size:g} rad"
-        case "magnet_coil" | "magnet_slip" | "rotor_loss":
+        case "wrong_marker":
+            return f"other marker {f.size:g} m aside"
+        case "camera_noise":
+            return f"{f.size:g} times the camera's noise"
+        case "wrench_gain":
+            return f"force sensor at {100 * f.size:g} %"
+        case "camera_outliers":
+            return f"images scattered by {f.size:g} m"
+        case "encoder_drift":
+            return f"encoder drifting {f.size:+g} rad/s"
+        case "link_delay":
+            return f"link slower by {f.size:g} ms/s"
+        case "gust":
+            return f"gust of {f.size:g} m/s"
+        case "magnet_coil" | "magnet_slip" | "magnet_stuck" | "rotor_loss" | "thrust_loss":
             return f"{f.kind.replace('_', ' ')} of {100 * f.size:g} %"
         case kind:
             return kind.replace("_", " ")
@@ -147,6 +186,10 @@ def measured_part(flights: list[Flight]) -> str:
     parts += [
         "",
         *(f"Not here: {mission} `{fault}` `{kind}` ({what})." for (mission, fault, kind), what in OPEN.items()),
+        "",
+        "Trials that end or are found otherwise than the table says, and why:",
+        "",
+        *(f"- {mission} `{fault}` `{kind}`: {what}." for (mission, fault, kind), what in OTHERWISE.items()),
         "",
     ]
     return "\n".join(parts)

@@ -45,7 +45,7 @@ def mission_markdown(name: str, scenario: Scenario, experiment: str | None = Non
         "",
         *_timeouts(mission),
         *_faults(mission, planned.phases),
-        *_criteria(mission),
+        *_criteria(mission, planned.phases),
         "## Keys of the scenario",
         "",
         "It uses these, and refuses others by name: " + ", ".join(f"`{key}`" for key in sorted(mission.uses)) + ".",
@@ -105,9 +105,13 @@ def _faults(mission: Mission, phases: tuple[Phase, ...]) -> Iterator[str]:
         yield from ("", "Signs, remedies and trials: [faults.md](../faults.md).", "")
 
 
-def _criteria(mission: Mission) -> Iterator[str]:
+def _criteria(mission: Mission, phases: tuple[Phase, ...]) -> Iterator[str]:
     if mission.criteria:
         yield from ("## When it has succeeded", "", "| figure | bound | means |", "|---|---|---|")
         for c in mission.criteria:
             yield f"| {c.name.replace('_', ' ')} | {c.bound:g} {c.unit} | {c.meaning} |"
+        yield ""
+    touching = [f"`{p.name}`" for p in phases if p.on_cradle and (not p.final or p.name == "done")]
+    if touching:
+        yield f"The UAV may touch the cradle in {', '.join(touching)}; in another phase that is a failure."
         yield ""

@@ -8,6 +8,7 @@ from armland import __version__
 from armland.cli.commands.detector import detector
 from armland.cli.commands.gains import gains
 from armland.cli.commands.logs import log, report
+from armland.cli.commands.margins import margins
 from armland.cli.commands.paper import paper
 from armland.cli.commands.run import land, run, takeoff
 from armland.cli.commands.studies import envelope, takeoff_weight, verify
@@ -37,7 +38,7 @@ def root(
     """Land a UAV with a robot arm."""
 
 
-for command in (land, takeoff, run, paper, report, log, verify, gains, envelope, takeoff_weight, detector):
+for command in (land, takeoff, run, paper, report, log, verify, gains, envelope, margins, takeoff_weight, detector):
     app.command(epilog=vars(command)["epilog"])(command)
 
 

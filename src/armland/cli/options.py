@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from armland.errors import ConfigurationError
+from armland.scenario.deviation import Level
 from armland.scenario.tables import update
 
 
@@ -85,6 +86,13 @@ SETTINGS = option(
     metavar="KEY=VALUE",
 )
 
+DEVIATION = option(
+    Level | None,
+    "How far the plant differs from what the controller believes: nominal, mild (half the published ranges), published, harsh "
+    "(twice). If absent the scenario's own level; what flies without one flies published.",
+    metavar="LEVEL",
+)
+
 MADE = {
     "seed": SEED,
     "settings": SETTINGS,
@@ -98,6 +106,7 @@ SHOWN = {"as_json": AS_JSON, "figures": option(bool, "Draw the figures.", "--fig
 
 FLOWN = {
     "law": LAW,
+    "deviation": DEVIATION,
     "seeds": option(int, "Fly this many seeds and print how many succeed.", default=1, min=1, max=1_000_000),
     "jobs": option(int | None, "Flights of a campaign at a time; one per core if absent.", min=1, max=1000),
     **MADE,
@@ -125,7 +134,7 @@ def load(name: str, given: dict[str, Any], hinged: bool = False) -> "Scenario":
 
     Args:
         name: file, or name of one that comes with armland.
-        given: options of `MADE`.
+        given: options of `MADE`, and `DEVIATION` where the command has it.
         hinged: whether the mission begins with the UAV on the arm, at the start of a path, or at a place of its own.
 
     Raises:
@@ -145,6 +154,8 @@ def load(name: str, given: dict[str, Any], hinged: bool = False) -> "Scenario":
         overrides = {"arm": part, **({"trajectory": {"start_m": None}} if hinged else {"place": {"home_deg": None}})}
     elif ee is not None:
         overrides = {"arm": {"ee": ee}}
+    if given.get("deviation") is not None:
+        update(overrides, {"deviation": {"level": given["deviation"]}})
     update(overrides, parse_settings(given.get("settings") or []))
     loaded = load_scenario(name, overrides)
     return loaded if seed is None else loaded.with_seed(seed)

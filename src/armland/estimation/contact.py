@@ -35,7 +35,6 @@ def told_layout() -> np.dtype:
     """What `detect` is told."""
     return np.dtype(
         [
-            ("weight", "f8"),
             ("share_gain", "f8"),  # of the shares' low pass, per tick
             ("clearance", "f8"),  # m
             ("contact", TRIGGER),  # on |F|, N
@@ -78,11 +77,11 @@ def load_layout() -> np.dtype:
     )
 
 
-def told(scenario: Scenario, weight: float) -> Records:
-    """The record (1,) of `told_layout` for the settings of a scenario and the `weight` of all that flies, N."""
+def told(scenario: Scenario) -> Records:
+    """The record (1,) of `told_layout` for the settings of a scenario."""
     c, tick_s = scenario.estimation.contact, 1.0 / scenario.run.rate_hz
     p: Records = np.zeros(1, told_layout())
-    p["weight"], p["clearance"] = weight, c.clearance_m
+    p["clearance"] = c.clearance_m
     p["share_gain"] = 1.0 - np.exp(-tick_s / c.share_s)
     for name, t in (
         ("contact", c.contact_n),
@@ -108,6 +107,7 @@ def switched(value: float, trigger: Record, switch: Record) -> int:
 def detect(
     force: Array,
     thrust_z: float,
+    weight: float,
     magnet: bool,
     retreat: float,
     p: Record,
@@ -119,6 +119,7 @@ def detect(
     Args:
         force: of the end effector on the UAV (3,), N, D, bias and tool removed.
         thrust_z: vertical part of the thrust that acts, as far as is known, N.
+        weight: of all that flies, N.
         magnet: whether the magnet is commanded on.
         retreat: how far the end effector has moved away since the magnet was switched off, m.
         p: of `told_layout`.
@@ -127,8 +128,8 @@ def detect(
     """
     gain = p.share_gain if s.begun else 1.0
     s.begun = 1
-    s.arm_share += gain * (force[2] / p.weight - s.arm_share)
-    s.rotor_share += gain * (thrust_z / p.weight - s.rotor_share)
+    s.arm_share += gain * (force[2] / weight - s.arm_share)
+    s.rotor_share += gain * (thrust_z / weight - s.rotor_share)
     magnitude = np.sqrt(force[0] ** 2 + force[1] ** 2 + force[2] ** 2)
     load.arm_share, load.rotor_share = s.arm_share, s.rotor_share
     load.ground_share = 1.0 - s.arm_share - s.rotor_share

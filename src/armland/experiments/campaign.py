@@ -68,6 +68,9 @@ FIGURES: dict[str, Figure] = {
     "release.hinge_force_n": Figure("release hinge force [N]"),
     "tracking.attitude_max_deg": Figure("attitude error max [°]"),
     "hinge_force_max_n": Figure("hinge force max [N]"),
+    "magnet_pull_max_n": Figure("magnet pull max [N]"),
+    "magnet_shear_max_ratio": Figure("magnet shear ratio max [1]"),
+    "fall_m": Figure("fall max [mm]", 1e3),
     "joint_torque_max_ratio": Figure("torque ratio max [1]"),
     "duration_s": Figure("duration [s]"),
 }

@@ -3,11 +3,9 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
-
 from armland.experiments.episode import Episode
 from armland.experiments.judge.tracking import Metrics
-from armland.experiments.paper import UNBOUNDED, Progress, Verdict, fly_all, metrics_of, prepare, silent
+from armland.experiments.paper import UNBOUNDED, Progress, Verdict, fly_all, metrics_of, prepare, resting, silent
 from armland.scenario import Scenario
 
 SCALES = (1.0, 0.8, 1.2)  # Factors on mass and inertia of the controller's arm model
@@ -31,10 +29,9 @@ class Row:
     law: str
     metrics: Metrics
     torque_ratio_max: float
-    resting_swing_deg: float
-    """Largest deviation of the attitude from its mean during the last second, deg: a limit cycle does not rest."""
-    resting_error_m: float  # Largest mean position error of an axis during the last second, m
-    resting_tilt_deg: float  # Mean attitude error during the last second, deg
+    resting_swing_deg: float  # As of `paper.Resting`
+    resting_error_m: float
+    resting_tilt_deg: float
 
 
 @dataclass(frozen=True)
@@ -96,18 +93,15 @@ def compare(scenario: Scenario, law: str | None = None, progress: Progress = sil
 
 
 def _row(condition: str, law: str, episode: Episode) -> Row:
-    rate = round(1e9 / int(episode.metadata["period_ns"]))
-    last = episode.ticks[-rate:]
-    tilt = np.rad2deg(2.0 * last["truth"]["quat"][:, 1:])
-    error = last["truth"]["r"] - last["reference"]["r"]
+    last = resting(episode)
     return Row(
         condition,
         law,
         metrics_of(episode),
         float(episode.ticks["health"]["torque_ratio"].max()),
-        float(np.linalg.norm(tilt - tilt.mean(axis=0), axis=1).max()),
-        float(np.abs(error.mean(axis=0)).max()),
-        float(np.linalg.norm(tilt.mean(axis=0))),
+        last.swing_deg,
+        last.error_m,
+        last.tilt_deg,
     )
 
 

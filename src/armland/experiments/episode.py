@@ -85,7 +85,7 @@ def prepare(
     simulator = Simulator(scenario, made.home, made.mission.start, made.names)
     if made.mission.start == "air":
         check_start(scenario, simulator.scene, made.home)
-    return Flight(scenario, made, simulator, Controller(made), metadata_of(scenario, made, simulator.scene.put_down))
+    return Flight(scenario, made, simulator, Controller(made), metadata_of(scenario, made, simulator.scene))
 
 
 def fly(

@@ -13,7 +13,7 @@ import numpy as np
 
 from armland.errors import PlantError
 from armland.experiments.episode import Flight
-from armland.plant.devices import faults
+from armland.plant.faults import table as faults
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario.faults import Fault

@@ -61,6 +61,9 @@ def kept_layout() -> np.dtype:
             ("thrust", "f8"),  # N, commanded
             ("hover", "f8"),  # N, command that carries the weight
             ("integral", "f8", (3,)),  # m/s², of the station keeping
+            ("alone", "i8"),  # ticks for which the UAV has been told to hover by itself
+            ("trim", "f8", (3,)),  # m/s², that its own hover asks for beyond gravity [D]
+            ("trimmed", "i8"),  # the sample of which that was learnt last; 0: none yet
             ("anchor", "f8", (3,)),  # m, where the centre of mass was when it began to fly on [D]
             ("cruising", "i8"),  # tick of that; 0: not yet
             ("q_d", "f8", (4,)),  # set-point, D<-B

@@ -8,10 +8,11 @@ from numba import njit
 from armland.linking import linked, named
 from armland.mission.reference.moves import BACK_OFF, TRACK, YIELD
 from armland.mission.reference.refer import begin_reference
-from armland.mission.supervisor.faults import find_fault, note_jolts, seen_layout, watch_layout
+from armland.mission.supervisor.faults import find_fault, seen_layout, watch_layout
 from armland.mission.table.arrays import GUARDS, next_phase
 from armland.mission.table.phases import LINK, MAGNET, SIGNAL, SIGNALS, UAV
 from armland.records import Record
+from armland.rotations import Array, matrix
 
 MAGNET_ON, MAGNET_TEST = MAGNET.index("on"), MAGNET.index("test")
 BALANCE, HELD = UAV.index("balance"), LINK.index("held")
@@ -38,6 +39,8 @@ BALANCE, HELD = UAV.index("balance"), LINK.index("held")
     S_RETRIES,
     S_BIAS,
     S_ROTORS,
+    S_LEAN,
+    S_IMAGE_OFFSET,
 ) = (SIGNAL[name] for name in SIGNALS)
 
 COIL_S = 0.15
@@ -97,8 +100,7 @@ def decide(b: Record) -> None:
     elapsed = (now - s.begin) * p.tick_s
     fill_signals(elapsed, b)
     magnet_on = (b.kept.act.magnet == MAGNET_ON and elapsed > COIL_S) or row.magnet == MAGNET_TEST
-    expected = load_expected(row, elapsed, b.tick.estimate, p, b.kept.act.hover)
-    note_jolts(now, b.tick.estimate, b.kept.refer, p.watch, s.seen)
+    expected = load_expected(row, elapsed, b.tick.estimate, b.kept.act.hover, b.kept.estimate.weight, p)
     fault = find_fault(expected, magnet_on, s.phase, b)
     new = b.table.faults[fault, s.phase] if fault else next_phase(s.phase, elapsed, s, b.table)
     if fault:
@@ -143,11 +145,23 @@ def fill_signals(elapsed: float, b: Record) -> None:
     out[S_RETREAT], out[S_ARM_ERROR], out[S_RETRIES] = s.retreat, np.sqrt(arm), s.retries
     out[S_MAGNET_READY] = 1.0 if m.magnet_force > p.magnet_ready else 0.0
     out[S_BIAS] = 1.0 if b.kept.estimate.wrench.blocks >= BIAS_BLOCKS else 0.0
-    out[S_MAGNET_FAULT], out[S_ROTORS] = m.magnet_fault, e.thrust
+    out[S_MAGNET_FAULT], out[S_ROTORS], out[S_LEAN] = m.magnet_fault, e.thrust, _lean(e.quat, act.q_d)
+    shown = b.kept.estimate.grip
+    out[S_IMAGE_OFFSET] = np.sqrt(shown[0] ** 2 + shown[1] ** 2)
 
 
 @njit(cache=True)
-def load_expected(row: Record, elapsed: float, e: Record, p: Record, hover: float) -> float:
+def _lean(quat: Array, asked: Array) -> float:
+    # Angle between the z axes of two attitudes (4,), deg.
+    apart = 0.0
+    R, R_d = matrix(quat), matrix(asked)
+    for i in range(3):
+        apart += R[i, 2] * R_d[i, 2]
+    return float(np.rad2deg(np.arccos(min(max(apart, -1.0), 1.0))))
+
+
+@njit(cache=True)
+def load_expected(row: Record, elapsed: float, e: Record, hover: float, weight: float, p: Record) -> float:
     """Vertical hinge force, N, that load and thrust explain, where they do; else NaN.
 
     None where the arm follows the plate from below, where it has had the time to learn the sensor's bias or to draw back, and
@@ -157,8 +171,9 @@ def load_expected(row: Record, elapsed: float, e: Record, p: Record, hover: floa
         row: phase.
         elapsed: time in it, s.
         e: estimate.
-        p: what deciding is told.
         hover: thrust command that carries the weight, N.
+        weight: as the force-torque sensor finds it, N.
+        p: what deciding is told.
     """
     if row.arm == TRACK:
         return 0.0
@@ -168,9 +183,9 @@ def load_expected(row: Record, elapsed: float, e: Record, p: Record, hover: floa
         return 0.0 if elapsed > FREED_S else np.nan
     if row.uav == BALANCE:
         # What carries the weight is being found out: until then it is the thrust that was asked for.
-        return float(p.weight - e.thrust)
+        return float(weight - e.thrust)
     if row.held and (row.observe or e.r[2] > p.clear_z):
-        return float(p.weight * (1.0 - e.thrust / max(hover, 1e-3)))
+        return float(weight * (1.0 - e.thrust / max(hover, 1e-3)))
     return np.nan
 
 
@@ -184,9 +199,12 @@ def enter(new: int, now: int, b: Record) -> None:
         for i in range(3):
             s.grip[i] = e.r[i]
     if after.held and not before.held:
-        b.kept.estimate.observer.begun, s.seen.caught = 0, now
+        b.kept.estimate.observer.begun = 0
         for i in range(3):
             b.kept.estimate.observer.force[i] = b.kept.act.force[i] = 0.0
+    if after.free and not before.free:
+        # What the sensor's zero was before a contact says little after it: it is learnt anew.
+        b.kept.estimate.wrench.blocks = 0
     s.retries += 1 if new == table.miss else 0
     s.phase, s.begin = new, now
     for i in range(GUARDS):

@@ -28,6 +28,9 @@ from armland.rotations import Array
 RING = 256
 """Ticks of thrust commands that the ground remembers, to know which one acts."""
 
+UPLINK_S = 0.5
+"""Time constant with which the uplink's delay is learnt."""
+
 SINGULARITY_PERIOD = 20
 """Ticks between evaluations of the Jacobian's smallest singular value."""
 
@@ -47,7 +50,8 @@ def told_layout() -> np.dtype:
             ("weight", "f8"),  # N, of all that flies
             ("body_mass", "f8"),  # kg, that the hinge carries
             ("lever", "f8", (3,)),  # m, CM to pivot [B]
-            ("uplink", "i8"),  # ticks until a thrust command acts on board
+            ("uplink", "i8"),  # ticks until a thrust command acts on board, as believed
+            ("learns", "i8"),  # 1: uplink and weight are learnt in flight
             ("rotor_gain", "f8"),  # of the rotors' lag, per tick
             ("drag", "f8"),  # N·s/m, horizontal
             ("launch", "f8", (3,)),  # m/s, velocity that a take-off gives to the UAV [D]
@@ -68,21 +72,31 @@ def told_layout() -> np.dtype:
     )
 
 
+NOD = np.dtype([("count", "i8"), *((name, "f8", (3,)) for name in ("a", "f", "aa", "fa", "gain"))])
+"""Sums over a nod of the tool's acceleration a, m/s², the force f, N, and their products; the force found over the one expected, 1."""
+
+
 @lru_cache
 def kept_layout(joints: int) -> np.dtype:
     """What the estimate keeps from tick to tick, for an arm with `joints` joints."""
     return np.dtype(
         [
             ("good", layout("measurement", joints)),  # last good measurement; its tick one more than the sample's
+            ("same", "i8", (joints,)),  # samples in a row in which each joint read the same
+            ("nod", NOD),
             ("bad", "i8"),  # numbers of the present measurement that could not be used
             ("sigma", "f8"),  # smallest singular value of the Jacobian
             ("mu", "f8", (6,)),  # N, N·m, μ ẋ_d [D]
             ("seen", "i8"),  # 1 once the plate has been seen
-            ("grip_offset", "f8"),  # m, of the plate's pivot from the end effector, in the newest image
+            ("grip", "f8", (3,)),  # m, of the plate's pivot from the end effector, smoothed over the newest images [E]
+            ("grip_offset", "f8"),  # m, its size
             ("grip_tick", "i8"),  # that image's exposure
             ("grip_far", "i8"),  # images in a row in which it was too far off
             ("thrust_log", "f8", (RING,)),  # N, commands
             ("acting", "f8"),  # N
+            ("uplink", "f8"),  # ticks until a command acts on board, as the UAV's echoes say
+            ("echoed", "i8"),  # the sample of which that was learnt last
+            ("weight", "f8"),  # N, of all that flies, as the force-torque sensor finds it
             ("filter", layouts.kept_layout()),
             ("plate", layouts.plate_layout()),
             ("wrench", wrench.kept_layout()),
@@ -98,7 +112,7 @@ def screen(b: Record) -> None:
     """Screen the measurement of the board `b`, and remember how many of its numbers could not be used."""
     p, s = b.told.estimate, b.kept.estimate
     held = b.kept.decide.held == 1
-    s.bad = screened(b.tick.measurement, s.good, held, p.joint_leap, p.attitude_leap, p.tick_s)
+    s.bad = screened(b.tick.measurement, s.good, s.same, held, p.joint_leap, p.attitude_leap, p.tick_s)
 
 
 @linked(lambda n: (named("board", n),))
@@ -113,6 +127,7 @@ def estimate(b: Record) -> None:
     row = b.table.phases[b.kept.decide.phase]
     if b.kept.limit.started == 0 or m.tick % SINGULARITY_PERIOD == 0:
         s.sigma = smallest_singular_value(b.arm.jacobian)
+    learn_uplink(m, p, s)
     e.thrust = acting_thrust(m.tick, p, s)
     estimate_arm(m, b.arm, e)
     if p.fused:
@@ -135,8 +150,25 @@ def acting_thrust(tick: int, p: Record, s: Record) -> float:
         p: what the estimate is told.
         s: what it keeps; `acting` is written.
     """
-    s.acting += p.rotor_gain * (s.thrust_log[(tick - p.uplink) % RING] - s.acting)
+    s.acting += p.rotor_gain * (s.thrust_log[(tick - round(s.uplink)) % RING] - s.acting)
     return float(s.acting)
+
+
+@njit(cache=True)
+def learn_uplink(m: Record, p: Record, s: Record) -> None:
+    """Learn how long commands take to the UAV, from those that it sends back with its samples; within what the log holds.
+
+    Args:
+        m: measurement.
+        p: what the estimate is told.
+        s: what it keeps; `uplink`, ticks, is updated.
+    """
+    if m.uav_tick == s.echoed or m.uav_echo <= 0 or p.learns == 0:
+        return
+    gain = min((m.uav_tick - s.echoed) * p.tick_s / UPLINK_S, 1.0)
+    s.echoed = m.uav_tick
+    late = min(max(m.uav_tick - m.uav_echo, 0), RING - 1)
+    s.uplink += max(gain, 0.0) * (late - s.uplink)
 
 
 @njit(cache=True)

@@ -12,9 +12,19 @@ from numba import njit
 from armland.estimation.contact import detect
 from armland.estimation.disturbance import observe_force
 from armland.estimation.wrench import compensate
+from armland.mission.reference.moves import NOD
 from armland.models.environment import apparent_gravity
 from armland.records import Record
 from armland.rotations import cross, matrix, turned
+
+WEIGHED_S = 0.3
+"""Time constant with which the held UAV's weight is learnt."""
+
+MOST_ROTORS = 0.75
+"""Share of the weight on the rotors above which too little is left to weigh."""
+
+LEARNT_SHARE = 0.4
+"""Of the believed weight: how far from it the UAV's may be. Beyond, something else pulls or the load is gone."""
 
 
 @njit(cache=True)
@@ -34,13 +44,60 @@ def estimate_load(free: bool, magnet: bool, retreat: float, b: Record) -> None:
         lifted[i] = p.tool_follows * b.kept.refer.a[i] - gravity[i]
     compensate(m.wrench, b.arm.rotation, lifted, free, p.wrench, s.wrench, external, sigma)
     known = m.tick - m.wrench_tick <= p.wrench_age
+    row = b.table.phases[b.kept.decide.phase]
+    if row.arm == NOD and known:
+        feel_nod(m, b)
     force = turned(b.arm.rotation, external)
     up = 1.0 - 2.0 * (e.quat[1] ** 2 + e.quat[2] ** 2)
-    detect(force, e.thrust * up, magnet, retreat, p.contact, s.contact, s.load)
+    # By what carries the weight in hover: what the rotors really give of what they are asked for, nobody measures.
+    lift = e.thrust * s.weight / max(b.kept.act.hover, 1e-3)
+    detect(force, lift * up, s.weight, magnet, retreat, p.contact, s.contact, s.load)
     e.arm_share, e.ground_share = s.load.arm_share, s.load.ground_share
     for i in range(3):
         # A force that is not known gives way to nothing.
         e.hinge_force[i] = force[i] if known else 0.0
+    if known and row.held and row.observe and p.learns and e.r[2] > b.told.decide.clear_z:
+        weigh(force[2], e.thrust / max(b.kept.act.hover, 1e-3), p, s)
+
+
+@njit(cache=True)
+def feel_nod(m: Record, b: Record) -> None:
+    """Compare the force that the sensor reads while the arm nods with the tool's inertia force, by the slope of a straight line.
+
+    A constant bias does not change it. A dead sensor gives 0, a reversed one −1.
+
+    Args:
+        m: measurement.
+        b: board; what the estimate keeps of the nod is updated.
+    """
+    n, mass = b.kept.estimate.nod, b.told.estimate.wrench.mass
+    force, a = turned(b.arm.rotation, m.wrench[:3]), b.kept.refer.a
+    n.count += 1
+    for i in range(3):
+        n.a[i] += a[i]
+        n.f[i] += force[i]
+        n.aa[i] += a[i] * a[i]
+        n.fa[i] += force[i] * a[i]
+        spread = n.aa[i] - n.a[i] ** 2 / n.count
+        if spread > 0.0:
+            n.gain[i] = (n.fa[i] - n.f[i] * n.a[i] / n.count) / (mass * spread)
+
+
+@njit(cache=True)
+def weigh(force: float, rotors: float, p: Record, s: Record) -> None:
+    """Learn the weight of the UAV that hangs on the arm clear of the cradle; what cannot be one is not learnt.
+
+    Args:
+        force: vertical hinge force, N.
+        rotors: share of the weight that the rotors carry.
+        p: what the estimate is told.
+        s: what it keeps; `weight`, N, is updated.
+    """
+    if rotors > MOST_ROTORS:
+        return
+    found = force / (1.0 - rotors)
+    if abs(found - p.weight) < LEARNT_SHARE * p.weight:
+        s.weight += p.tick_s / WEIGHED_S * (found - s.weight)
 
 
 @njit(cache=True)

@@ -6,9 +6,14 @@ from numba import njit
 from armland.records import Record
 from armland.rotations import Array
 
+FORGOTTEN_S = 0.1
+"""Time over which the rates may explain a turn."""
+
 
 @njit(cache=True)
-def screened(m: Record, good: Record, held: bool, joint_leap: float, attitude_leap: float, tick_s: float) -> int:
+def screened(
+    m: Record, good: Record, same: Array, held: bool, joint_leap: float, attitude_leap: float, tick_s: float
+) -> int:
     """Replace what is not finite, or leaps, by the last good value; returns how many numbers that were.
 
     A sample that cannot be used counts as not arrived: its device's clock stands still, for the watchdogs to see. Of the UAV's
@@ -17,11 +22,18 @@ def screened(m: Record, good: Record, held: bool, joint_leap: float, attitude_le
     Args:
         m: measurement, mended.
         good: the last good one, brought up to date; its tick is one more than that of the last sample, 0 before the first.
+        same: (n,), 1, samples in a row in which each joint read the same and no speed at all, updated.
         held: whether the arm holds the UAV.
         joint_leap: rad from one sample to the next that no joint can move.
         attitude_leap: rad beyond what its rates explain that no UAV turns from one sample to the next.
         tick_s: s.
     """
+    if m.arm_tick > good.arm_tick:
+        for i in range(m.q.shape[0]):
+            # A real encoder's last digits are never still while its neighbours' are.
+            same[i] = same[i] + 1 if m.q[i] == good.q[i] and m.qd[i] == 0.0 else 0
+    # A stamp from the future, by a clock that is ahead, is one of now.
+    m.uav_tick = min(m.uav_tick, m.tick)
     if good.tick > 0:
         for i in range(m.q.shape[0]):
             if abs(m.q[i] - good.q[i]) > joint_leap:
@@ -77,4 +89,6 @@ def _turned(m: Record, good: Record, tick_s: float) -> float:
     for i in range(3):
         rate += max(m.uav_rate[i] ** 2, good.uav_rate[i] ** 2)
     turned = 2.0 * np.arccos(min(abs(same), 1.0))
-    return float(turned - 2.0 * np.sqrt(rate) * tick_s * (m.uav_tick - good.uav_tick))
+    # One that stays away for long must not pass for having turned as far as noise may have in that time.
+    since = min(tick_s * (m.uav_tick - good.uav_tick), FORGOTTEN_S)
+    return float(turned - 2.0 * np.sqrt(rate) * since)

@@ -10,6 +10,7 @@
 import numpy as np
 from numba import float64, njit
 
+from armland.estimation.plate.late_fusion import RING as FILTER_RING
 from armland.estimation.plate.pose_filter import fuse, predict
 from armland.estimation.plate.reckoning import advance
 from armland.linking import VECTOR, linked, named
@@ -20,6 +21,12 @@ from armland.records import Record
 from armland.rotations import Array, conjugate, matrix, multiply, quaternion_of, turned
 
 MAGNET_ON = MAGNET.index("on")
+GRIP_GAIN = 0.4
+"""Weight of the newest image in where the plate is on the magnet."""
+
+SURE = 3.0
+"""Standard deviations that noise does not explain."""
+
 AUTONOMOUS, STATION, LEVEL, CRUISE = (UAV.index(name) for name in ("autonomous", "station", "level", "cruise"))
 
 
@@ -91,9 +98,10 @@ def estimate_plate(lift: float, push: Array, b: Record) -> None:
 
 @njit(cache=True)
 def look_at_grip(m: Record, p: Record, s: Record) -> None:
-    """Where the plate is on the magnet, from the newest image alone: no motion of the arm and no model comes in.
+    """Where the plate is on the magnet, from the newest image and the attitude at its exposure: no motion of the arm comes in.
 
-    Pivot in the end effector's frame: camera + sample + R_eb (ρ_p − ρ_m), R_eb = R(sample) R_bmᵀ.
+    Pivot in the end effector's frame: camera + sample + R_eb (ρ_p − ρ_m), with R_eb by the fused attitude, since a marker's own tilt
+    is what a camera sees worst. It is far off where it is beyond what the camera's noise explains.
 
     Args:
         m: measurement.
@@ -103,12 +111,17 @@ def look_at_grip(m: Record, p: Record, s: Record) -> None:
     if not m.camera_fresh:
         return
     marker = p.filter
-    R_eb = matrix(multiply(m.camera_quat, conjugate(marker.marker_quat)))
-    apart = 0.0
+    seen = m.camera_capture % FILTER_RING
+    body = multiply(s.filter.align.quat, s.filter.quat[seen])
+    R_eb = matrix(multiply(conjugate(s.filter.camera_quat[seen]), body))
+    apart, variance = 0.0, 0.0
     for i in range(3):
         across = p.camera[i] + m.camera_position[i]
         for k in range(3):
             across += R_eb[i, k] * (p.lever[k] - marker.marker_offset[k])
-        apart += across**2
+        # Outliers scatter, a plate that has slid stays where it is.
+        s.grip[i] += GRIP_GAIN * (across - s.grip[i])
+        apart += s.grip[i] ** 2
+        variance += s.filter.noise * m.camera_sigma[i] ** 2
     s.grip_offset, s.grip_tick = np.sqrt(apart), m.camera_capture
-    s.grip_far = s.grip_far + 1 if s.grip_offset > p.slip else 0
+    s.grip_far = s.grip_far + 1 if s.grip_offset > p.slip + SURE * np.sqrt(variance) else 0

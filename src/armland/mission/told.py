@@ -15,6 +15,8 @@ from armland.estimation.plate import layouts
 from armland.mission.belief import Flyer
 from armland.mission.board import board_layout
 from armland.mission.feasibility.launch import Launch
+from armland.mission.feasibility.room import room
+from armland.mission.feasibility.weight import HOVER_SHARE
 from armland.mission.table.mission import Start
 from armland.models.arm import ArmModel
 from armland.models.parameters import ROTORS
@@ -33,11 +35,14 @@ SWING = 0.75
 """The wrist's share of a balancing pivot's displacement. At this one the pivot may be fastest: 0.9 to 1.1 m/s across the corners
 of its reach, against 0.6 m/s of the wrist alone and 0.3 m/s of the arm without it."""
 
+COMING_MPS2 = 3.0
+"""Largest acceleration of the UAV that is carried on over the uplink's delay: what its largest tilt makes."""
+
 BALANCE_AGE_S = 0.05
 """Oldest attitude that can be balanced by."""
 
-SETTLE_M, NEAR_M = 0.025, 0.010
-"""Height above the rails below which a UAV is set down and not balanced, and at which they may touch it."""
+SETTLE_M = 0.025
+"""Height above the rails below which a UAV is set down and not balanced."""
 
 CLEAR_M = 0.01
 """Height above them from which the cradle carries nothing."""
@@ -104,7 +109,7 @@ def _estimate(p: Records, t: Telling) -> None:
     p["mass"], p["weight"] = t.flyer.mass, t.flyer.weight
     p["body_mass"], p["lever"] = t.flyer.body.mass, t.flyer.body.lever
     # What is asked of a hinged UAV counts as given: what is not, is a disturbance.
-    p["uplink"] = 1 if hinged else t.ticks(s.link.uplink_delay_ms)
+    p["uplink"], p["learns"] = (1, 0) if hinged else (t.ticks(s.link.uplink_delay_ms), 1)
     p["rotor_gain"] = 1.0 if hinged else 1.0 - np.exp(-1.0 / (s.run.rate_hz * s.rotors.time_constant_s))
     p["drag"], p["camera"], p["slip"] = s.uav.drag_nspm, s.camera.position_m, s.limits.slip_m
     p["launch"] = 0.0 if t.launch is None else t.launch.velocity
@@ -113,7 +118,7 @@ def _estimate(p: Records, t: Telling) -> None:
     p["tool_follows"] = 0.0 if hinged else 1.0
     p["onboard_kp"], p["onboard_kd"] = s.onboard.kp_nm, s.onboard.kd_nms
     p["filter"] = layouts.told(s, t.flyer.mass, t.flyer.body.lever)
-    p["wrench"], p["contact"] = wrench.told(s), contact.told(s, t.flyer.weight)
+    p["wrench"], p["contact"] = wrench.told(s), contact.told(s)
     bandwidth, most = s.estimation.load_observer_rad_s, s.estimation.load_observer_limit_n
     if hinged:
         bandwidth, most = (s.control.observer_rad_s if t.switches.observer else 0.0), s.control.observer_limit_n
@@ -124,15 +129,13 @@ def _decide(p: Records, t: Telling) -> None:
     s, limits, watch = t.scenario, t.scenario.limits, p["watch"]
     p["tick_s"], p["station"], p["weight"] = t.tick_s, _station(t), t.flyer.weight
     p["magnet_ready"], p["clear_z"] = limits.magnet_share * s.magnet.rating_n, s.place.put_down_m[2] + CLEAR_M
-    watch["tick_s"], watch["down"], watch["near"] = t.tick_s, s.place.put_down_m[2], NEAR_M
+    watch["tick_s"] = t.tick_s
     watch["uav_age"], watch["camera_age"] = t.ticks(limits.uav_age_ms), 1e-3 * limits.camera_age_ms
     watch["arm_age"], watch["wrench_age"] = t.ticks(limits.arm_age_ms), t.ticks(limits.wrench_age_ms)
     watch["unexplained"], watch["load_gone"] = limits.unexplained_n, limits.load_gone_n
     watch["hinge_max"], watch["tilt_max"] = limits.hinge_force_share * s.magnet.rating_n, np.deg2rad(limits.tilt_deg)
-    watch["fall_rate"], watch["capture_max"] = _fall_rate(t), np.deg2rad(limits.capture_deg)
-    # m l a against the on-board attitude loop's stiffness, twice as much where it overshoots.
-    body = t.flyer.body
-    watch["tip"] = 2.0 * body.mass * np.linalg.norm(body.lever) / min(s.onboard.kp_nm[:2])
+    static = ROTORS * s.rotors.max_thrust_n
+    watch["thrust_max"], watch["hover_max"] = s.control.thrust.ceiling * static, HOVER_SHARE * static
     watch["joint_margin"], watch["sigma_min"] = limits.joint_margin_rad, limits.sigma_min
     watch["speed_share"] = limits.joint_speed_share
 
@@ -142,6 +145,9 @@ def _refer(p: Records, t: Telling) -> None:
     p["tick_s"], p["standoff"], p["beyond"], p["depth"] = t.tick_s, place.standoff_m, a.beyond_m, place.withdraw_m
     p["targets"][0, : len(t.targets)] = t.targets
     p["track"], p["track_max"], p["coast"] = a.track_rad_s, a.track_max_mps2, a.coast_s
+    p["lowest"] = min(place.catch_m[2] - place.wait_below_m, place.put_down_m[2] - place.search_m - place.withdraw_m)
+    p["lower"], p["search"] = a.lower_mps, place.search_m
+    p["track_speed"], p["room"] = a.track_max_mps, room(s, t.start)
     p["give_way"], p["give_way_max"] = a.give_way_mpns, a.give_way_max_m
     if t.launch is not None:
         p["launch"], p["launch_s"], p["leave_s"] = t.launch.velocity, t.launch.run_up_s, t.launch.leave_s
@@ -171,7 +177,8 @@ def _uav(p: Records, t: Telling) -> None:
     p["period"], p["hover_s"] = s.run.rate_hz // station.rate_hz, station.hover_s
     p["k_position"], p["k_velocity"], p["k_integral"] = station.k_position, station.k_velocity, station.k_integral
     p["speed_max"], p["integral_max"] = station.speed_max_mps, station.integral_max_mps2
-    p["tilt_max"] = station.tilt_max_rad
+    p["coming_max"] = COMING_MPS2
+    p["tilt_max"], p["gust_share"], p["gust_max"] = station.tilt_max_rad, station.gust_share, station.gust_max_mps2
 
 
 def _law(p: Records, t: Telling) -> None:

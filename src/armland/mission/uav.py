@@ -16,17 +16,24 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from armland.control.laws.station_keeping import StationGains, StationReference, attitude_of, keep_station
+from armland.control.laws.station_keeping import attitude_of
+from armland.mission.reference.guided import cruise, keep, lean_against_drag, learn_trim, take_over
 from armland.mission.table.phases import LINK, UAV
-from armland.models.environment import apparent_gravity
 from armland.records import Record, UavMode
-from armland.rotations import Array, conjugate, cross, matrix, multiply, turned
+from armland.rotations import Array, conjugate, multiply
 
 AUTONOMOUS, STATION, LEVEL, RAMP, BALANCE, OFF, RUN_UP, CRUISE, HINGED = range(len(UAV))
 MODE_AUTONOMOUS, MODE_OFF = UavMode.AUTONOMOUS, UavMode.OFF
 MODES = (UavMode.GUIDED, UavMode.HELD, UavMode.LANDED, UavMode.CAUGHT, UavMode.HINGED)
 """By index into `phases.LINK`."""
 HELD = LINK.index("held")
+
+RECKONED_S = 0.5
+"""How long the station is kept by reckoning alone: a UAV that has left the camera's view comes back into it, and the error of its
+velocity stays below 0.3 m/s in a gust that ends meanwhile. Then it hovers by itself."""
+
+LEANT_MPS2 = 2.0
+"""Largest horizontal acceleration that a UAV on the hinge holds against by leaning: 11 degrees."""
 
 
 @lru_cache
@@ -58,6 +65,9 @@ def told_layout() -> np.dtype:
             ("speed_max", "f8"),  # m/s
             ("integral_max", "f8"),  # m/s²
             ("tilt_max", "f8"),  # rad
+            ("gust_share", "f8"),  # of the disturbance in the plate filter
+            ("gust_max", "f8"),  # m/s²
+            ("coming_max", "f8"),  # m/s², of the acceleration that is carried on over the uplink's delay
         ]
     )
 
@@ -74,33 +84,37 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     tick, e, c = b.tick.measurement.tick, b.tick.estimate, b.tick.command
     p, s, what = b.told.act.uav, b.kept.act, row.uav
     c.uav_mode = MODES[row.link]
-    blind = not e.plate_valid and (what == STATION or (what == CRUISE and not p.fly_on))
+    learn_trim(b)
+    unseen = b.kept.estimate.seen == 0 or e.plate_age > RECKONED_S
+    blind = unseen and (what == STATION or (what == CRUISE and not p.fly_on))
     if what == AUTONOMOUS or blind:
         c.uav_mode = MODE_AUTONOMOUS
         s.thrust = s.hover
         _level(p, s)
     elif what == STATION:
+        if s.alone > 0:
+            take_over(b.kept.estimate.plate.bias, p, s)
         if tick % p.period == 0:
-            _keep(p.station, p.lever, np.zeros(3), b)
+            keep(p.station, p.lever, np.zeros(3), b)
     elif what == CRUISE:
         if tick % p.period == 0 or s.cruising == 0:
-            _cruise(tick, b)
+            cruise(tick, b)
     elif what == RAMP:
-        _ramp(row.share * s.hover, row.link == HELD, e, p, s)
+        _ramp(row.share * s.hover, row.link == HELD, b.kept.estimate.weight, e, p, s)
         _level(p, s)
         if row.share == 0.0 and s.thrust <= p.thrust_min:
             s.thrust, c.uav_mode = 0.0, MODE_OFF
     elif what == RUN_UP:
         # The thrust that carried the weight at rest: what the arm pushes with is not to be balanced.
-        _against_drag(e.v, p, s)
+        lean_against_drag(e.v, p, s)
     elif what == BALANCE:
         _free_of_force(e, p, s)
-        _level(p, s)
     elif what == OFF:
         s.thrust, c.uav_mode = 0.0, MODE_OFF
     elif what == HINGED:
         # What the law made of it: the rotors may not give what was asked for.
         s.thrust = c.thrust if row.held else p.hinged
+    s.alone = s.alone + 1 if c.uav_mode == MODE_AUTONOMOUS else 0
     quat = multiply(conjugate(align), s.q_d)
     for i in range(4):
         c.uav_quat[i] = quat[i]
@@ -117,73 +131,22 @@ def _free_of_force(e: Record, p: Record, s: Record) -> None:
     step = min(max(p.balance_rate * e.hinge_force[2], -p.thrust_rate), p.thrust_rate) * p.tick_s
     s.thrust = min(max(s.thrust + step, p.thrust_min), p.thrust_max)
     s.hover = s.thrust
-    # What carries the weight now is where the station keeping takes over.
-    s.integral[0] = s.integral[1] = 0.0
+    # What carries the weight and leans against the wind now is where the station keeping takes over.
+    for i in range(2):
+        s.integral[i] += p.balance_rate * e.hinge_force[i] / p.mass * p.tick_s
+        s.integral[i] = min(max(s.integral[i], -LEANT_MPS2), LEANT_MPS2)
     s.integral[2] = s.thrust / p.mass - p.gravity
-
-
-@njit(cache=True)
-def _against_drag(v: Array, p: Record, s: Record) -> None:
-    # Tilted so that the thrust holds the drag at velocity v: the hinge is then free of force at a constant speed.
-    q_d = attitude_of(np.array([p.drag * v[0], p.drag * v[1], p.weight]), p.heading)
+    lean = np.array([s.integral[0], s.integral[1], p.gravity])
+    q_d = attitude_of(lean, p.heading)
     for i in range(4):
         s.q_d[i] = q_d[i]
 
 
 @njit(cache=True)
-def _cruise(tick: int, b: Record) -> None:
-    e, p, s = b.tick.estimate, b.told.act.uav, b.kept.act
-    if p.fly_on:
-        # Too heavy to hover: all that the rotors give, and the tilt that keeps the speed by itself.
-        s.thrust = p.thrust_max
-        _against_drag(p.launch, p, s)
-        s.cruising = tick
-        return
-    if s.cruising == 0:
-        s.cruising = tick
-        lever = turned(matrix(e.quat), p.lever)
-        for i in range(3):
-            s.anchor[i] = e.plate[i] - lever[i]
-    since, still, place, moving = (tick - s.cruising) * p.tick_s, np.zeros(3), np.empty(3), np.empty(3)
-    for i in range(3):
-        place[i], moving[i] = s.anchor[i] + p.launch[i] * since, p.launch[i]
-    _keep(place, still, moving, b)
-
-
-@njit(cache=True)
-def _keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
-    # At `place` − `lever`, m, of the centre of mass, which moves at `moving`, m/s; all (3,).
-    e, p, s = b.tick.estimate, b.told.act.uav, b.kept.act
-    R = matrix(e.quat)
-    arm, swing = turned(R, p.lever), turned(R, cross(e.omega, p.lever))
-    wanted, position, velocity, wind, held = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    for i in range(3):
-        held[i], wanted[i], position[i], velocity[i] = (
-            s.integral[i],
-            place[i] - lever[i],
-            e.plate[i] - arm[i],
-            e.plate_v[i] - swing[i],
-        )
-        wind[i] = moving[i] * (-p.drag / p.mass)
-    period = p.period * p.tick_s
-    rates = (p.k_position, p.k_velocity, p.k_integral, p.speed_max, p.integral_max, p.tilt_max)
-    gains = StationGains(p.mass, period, *rates, p.thrust_min, p.thrust_max)
-    gravity = apparent_gravity(b.environment, position, velocity)
-    reference = StationReference(wanted, moving, np.zeros(3), p.heading)
-    thrust, q_d, integral = keep_station(position, velocity, e.quat, reference, wind, gains, held, gravity)
-    s.thrust = thrust
-    for i in range(3):
-        s.integral[i] = integral[i]
-    for i in range(4):
-        s.q_d[i] = q_d[i]
-    s.hover += period / p.hover_s * (p.mass * (p.gravity + integral[2]) - s.hover)
-
-
-@njit(cache=True)
-def _ramp(target: float, held: bool, e: Record, p: Record, s: Record) -> None:
+def _ramp(target: float, held: bool, weight: float, e: Record, p: Record, s: Record) -> None:
     step = p.thrust_rate * p.tick_s
     if held and target < s.thrust:
         # By now the arm must carry what the rotors no longer do.
-        expected = p.weight * (1.0 - e.thrust / max(s.hover, 1e-3))
+        expected = weight * (1.0 - e.thrust / max(s.hover, 1e-3))
         step *= min(max(1.0 - (expected - e.hinge_force[2]) / p.force_slack, 0.0), 1.0)
     s.thrust += min(max(target - s.thrust, -step), step)

@@ -8,7 +8,20 @@ from numba import int64, njit, types
 
 from armland.linking import MATRIX, VECTOR, linked, record
 from armland.plant import truth as true
-from armland.plant.devices import brake, camera, encoders, faults, imu, link, magnet, motors, onboard, rotors, wrench
+from armland.plant.devices import (
+    air,
+    brake,
+    camera,
+    encoders,
+    imu,
+    link,
+    magnet,
+    motors,
+    onboard,
+    rotors,
+    wrench,
+)
+from armland.plant.faults import effects, intrusions
 from armland.plant.noise import BLOCK, Noise
 from armland.plant.world import world_layout
 from armland.records import Record, layout
@@ -66,14 +79,15 @@ def sense(k: int, world: Record, views: Views, noise: Noise, measurement: Record
     encoders.sample(k, data, told.encoders, what_fails, noise.encoders[row], measurement)
     wrench.sample(k, data, told.wrench, kept.wrench, what_fails, noise.wrench[row], measurement)
     imu.sample(k, told.imu, kept.imu, noise.imu[row], truth)
-    link.report(k, told.link, kept.link, kept.imu, noise.link[row])
+    link.report(k, world, noise.link[row])
     link.receive(k, told.link, kept.link, what_fails, noise.link[row], measurement)
     if told.camera.fitted:
-        camera.look(k, told.camera, kept.camera, what_fails, noise.camera[row], measurement, truth)
+        chance = noise.flip[row, 0]
+        camera.look(k, told.camera, kept.camera, what_fails, noise.camera[row], measurement, truth, chance)
     measurement.magnet_force, measurement.magnet_fault = kept.magnet.report, kept.magnet.fault
     truth.touching = kept.magnet.touching
     if told.faults.count > 0:
-        faults.corrupt(told.faults, what_fails, measurement)
+        intrusions.corrupt(told.faults, what_fails, measurement)
 
 
 @linked(lambda n: (*_seen(n), int64, record(layout("command", n)), record(layout("truth", n))), int64)
@@ -97,14 +111,15 @@ def actuate(k: int, world: Record, views: Views, noise: Noise, phase: int, comma
     """
     told, kept, row = world.told, world.kept, k % BLOCK
     if told.faults.count > 0:
-        faults.act(k, phase, told.faults, kept.faults)
+        effects.act(k, phase, told.faults, kept.faults)
     if not _finite(command, truth):
         return NOT_FINITE
-    motors.drive(command.tau, told.motors, views.ctrl)
+    motors.drive(command.tau, told.motors, kept.motors, noise.motors[row], views.sensordata, views.ctrl)
     link.send(k, told.link, kept.link, kept.faults, noise.link[row], command)
     if k % told.onboard.period == 0:
         onboard.fly(k, world, noise, row, truth)
-    rotors.spin(told.rotors, kept.rotors, kept.faults, truth, views.xfrc_applied[world.uav])
+    air.blow(told.air, kept.air, kept.faults, noise.air[row], truth)
+    rotors.spin(k, told.rotors, kept.rotors, kept.faults, kept.air, truth, views.xfrc_applied[world.uav])
     if told.magnet.fitted:
         magnet.energise(
             command.magnet,
@@ -116,9 +131,11 @@ def actuate(k: int, world: Record, views: Views, noise: Noise, phase: int, comma
             kept.faults,
             views.xfrc_applied,
         )
+        if told.air.wash > 0.0:
+            air.wash(told.air, kept.rotors.lift.sum(), truth, views.xfrc_applied[told.magnet.tool])
     brake.brake(k, command.brake, told.brake, kept.brake, views.dof_frictionloss, views.dof_solimp)
     if told.faults.count > 0:
-        faults.push(told.faults, kept.faults, views.xfrc_applied)
+        intrusions.push(told.faults, kept.faults, views.xfrc_applied)
     return APPLIED
 
 

@@ -31,6 +31,14 @@ class Noise(NamedTuple):
     """(BLOCK, CAMERA_WIDTH)."""
     link: Array
     """(BLOCK, 4): loss and lateness upwards, loss and lateness downwards."""
+    speed: Array
+    """(BLOCK, 3): the velocity that the UAV believes."""
+    motors: Array
+    """(BLOCK, n): torques."""
+    air: Array
+    """(BLOCK, 3): gusts."""
+    flip: Array
+    """(BLOCK, 1): whether the camera takes the second solution of a pose."""
 
 
 def stream(seed: int, name: str) -> np.random.Generator:
@@ -47,7 +55,7 @@ class NoiseSource:
     """
 
     def __init__(self, seed: int, joints: int) -> None:
-        widths = (2 * joints, 6, 6, 3, CAMERA_WIDTH, 4)
+        widths = (2 * joints, 6, 6, 3, CAMERA_WIDTH, 4, 3, joints, 3, 1)
         self._seed = seed
         self.rows = Noise(*(np.zeros((BLOCK, width)) for width in widths))
         self.generators: tuple[np.random.Generator, ...] = ()

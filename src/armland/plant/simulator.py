@@ -6,15 +6,20 @@ import mujoco
 import numpy as np
 from numba import njit
 
+from armland.control.laws.station_keeping import attitude_of
 from armland.errors import PlantError
 from armland.linking import link
 from armland.mission.controller import Controller
 from armland.models.parameters import ROTORS
 from armland.plant.block import fly_block
 from armland.plant.cycle import APPLIED, Views, actuate, sense, views_of
-from armland.plant.devices import brake, faults
+from armland.plant.deviation.bodies import deviate_bodies
+from armland.plant.deviation.devices import deviate_devices
+from armland.plant.deviation.drawn import Values, drawn
+from armland.plant.devices import brake
 from armland.plant.devices.camera_numbers import see_all
 from armland.plant.draw import Start, draw
+from armland.plant.faults import table as faults
 from armland.plant.noise import BLOCK, Noise, NoiseSource
 from armland.plant.pictures import Photographer, Pictures
 from armland.plant.scene.composition import Scene, build_scene
@@ -39,7 +44,7 @@ class Simulator:
         photographer: looks at real pictures in place of the camera's measurement model; then only the Python loop works.
 
     Raises:
-        ConfigurationError: a scenario that cannot be simulated.
+        ConfigurationError: a scenario that cannot be simulated, or faults of the camera that cannot act on pictures.
         PlantError: a camera that cannot be.
     """
 
@@ -56,7 +61,10 @@ class Simulator:
         link(self.scene.joints)
         self.data = mujoco.MjData(self.scene.model)
         self.drawn = draw(scenario, start)
+        self.deviations: Values = {}
         self.world: Records = build_world(scenario, self.scene, start, self.drawn, phases)
+        if start != "hinged":
+            self._deviate()
         self.views: Views = views_of(self.scene.model, self.data)
         self.noise_source = NoiseSource(scenario.run.seed, self.scene.joints)
         self.tick = 0
@@ -64,7 +72,15 @@ class Simulator:
         self._applied: Records = np.zeros(1, layout("command", self.scene.joints))
         self._pictures = Pictures(photographer) if photographer is not None else None
         if self._pictures is not None:
+            faults.refuse_detected(scenario)
             see_all(self.world["told"]["camera"])
+
+    def _deviate(self) -> None:
+        # A UAV that is hinged on the arm has been calibrated there.
+        self.deviations = drawn(self.scenario, self.scene.joints)
+        if self.deviations:
+            self.scene = deviate_bodies(self.deviations, self.scenario, self.scene)
+            deviate_devices(self.deviations, self.scenario, self.scene, self.world["told"])
 
     @property
     def noise(self) -> Noise:
@@ -97,6 +113,7 @@ class Simulator:
         mujoco.mj_forward(m, d)
         quat = d.sensordata[s.sensor["quat"] :][:4].copy()
         self.world["kept"]["link"]["down"]["quat"][0, 0] = multiply(self.drawn.imu_bias, quat)
+        self.world["kept"]["link"]["down"]["rotors"][0, 0] = self.world["kept"]["rotors"]["asked"][0]
         self.noise_source.restart()
         self.tick = 0
 
@@ -122,15 +139,29 @@ class Simulator:
         flying, gravity = self.start == "air", -self.scenario.environment.gravity_mps2[2]
         pivot = drawn.position if flying else s.put_down + [0.0, 0.0, 2e-4]
         quat = from_rotation_vector(np.array([0.0, 0.0, drawn.heading if flying else 0.0]))
+        told, weight = self.world["told"], float(s.model.body_subtreemass[s.uav_body]) * gravity
+        believed, factor = (
+            told["onboard"]["mass"][0],
+            0.25 * float(told["rotors"]["gain"].reshape(2, 2).sum(axis=1).sum()),
+        )
+        lift = np.array([0.0, 0.0, weight])
+        if flying and told["air"]["moves"][0]:
+            # It has hovered for long: it leans against the wind.
+            lift = lift - told["rotors"]["drag"][0] * told["air"]["mean"][0]
+            quat = attitude_of(lift, drawn.heading)
         d.qpos[s.uav_qpos[:3]] = pivot - matrix(quat) @ s.lever
         d.qpos[s.uav_qpos[3:]] = quat
         # A UAV that hovers knows what its rotors really give.
-        kept["onboard"]["integral"][0, 2] = gravity * (1.0 / drawn.thrust_factor - 1.0)
+        needed = weight / (believed * gravity) / factor
+        kept["onboard"]["integral"][0, 2] = gravity * (needed - 1.0) + told["onboard"]["trim"][0]
+        if flying and self.deviations:
+            # Sideways, too: against the wind, and against what it gets wrong about its own tilt.
+            seen = matrix(multiply(told["imu"]["bias"][0], quat))[:, 2]
+            kept["onboard"]["integral"][0, :2] = np.linalg.norm(lift) / (believed * factor) * seen[:2]
         kept["link"]["arrived"]["mode"] = UavMode.AUTONOMOUS if flying else UavMode.OFF
         if flying:
             d.qvel[s.uav_dof[:3]] = drawn.velocity
-            weight = s.uav_mass * gravity
-            self._spin(weight / drawn.thrust_factor, weight, drawn.thrust_factor)
+            self._spin(weight / factor, weight, factor)
 
     def _spin(self, asked: float, thrust: float, factor: float = 1.0) -> None:
         # All rotors turn as if they had been asked for `asked` N long ago, and give `thrust` N upwards.
@@ -153,7 +184,7 @@ class Simulator:
     def _show(self, pictures: Pictures, m: Records) -> None:
         told, kept = self.world["told"]["camera"][0], self.world["kept"]
         if (self.tick * told["rate_hz"]) % told["base_hz"] < told["rate_hz"]:
-            frozen = bool(kept["faults"]["camera_frozen"][0])
+            frozen = bool(kept["faults"]["camera"]["frozen"][0])
             pictures.expose(self.tick, self.data.qpos, self.data.qvel, frozen)
         if m["camera_fresh"][0]:
             sample = kept["camera"]["sample"]

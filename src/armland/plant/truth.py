@@ -8,7 +8,8 @@ from armland.records import Record, Records
 from armland.rotations import Array, matrix
 
 SENSORS = ("r", "v", "r_cm", "v_cm", "quat", "gyro", "ee_pos", "ee_vel", "ee_quat", "hinge_force")
-CONTACTS = ("cradle_force", "arm_cradle_force", "arm_floor_force", "arm_uav_force")
+FOUL = ("arm_cradle_force", "arm_floor_force", "arm_uav_force", "plate_cradle_force", "ground_force")
+CONTACTS = ("cradle_force", *FOUL)
 """Where a scene has no such contact, the force is zero."""
 
 
@@ -88,6 +89,8 @@ def _forces(data: Array, told: Record, t: Record) -> None:
     t.foul[0] = _length(data, told.arm_cradle_force)
     t.foul[1] = _length(data, told.arm_floor_force)
     t.foul[2] = _length(data, told.arm_uav_force)
+    t.foul[3] = _length(data, told.plate_cradle_force)
+    t.foul[4] = _length(data, told.ground_force)
 
 
 @njit(cache=True)

@@ -7,10 +7,10 @@ import numpy as np
 from armland.models.environment import environment_layout
 from armland.plant import truth
 from armland.plant.devices import (
+    air,
     brake,
     camera_numbers,
     encoders,
-    faults,
     imu,
     link,
     magnet,
@@ -20,6 +20,7 @@ from armland.plant.devices import (
     wrench,
 )
 from armland.plant.draw import Draw, Start
+from armland.plant.faults import table as faults
 from armland.plant.scene.composition import Scene
 from armland.records import Records
 from armland.scenario import Scenario
@@ -37,13 +38,14 @@ TOLD = {
     "camera": camera_numbers,
     "magnet": magnet,
     "faults": faults,
+    "air": air,
 }
 """Devices that are told something, by the name of their sub-record."""
 
 KEPT = {
     name: device
     for name, device in TOLD.items()
-    if name in ("wrench", "imu", "link", "onboard", "rotors", "brake", "camera", "magnet", "faults")
+    if name in ("wrench", "imu", "link", "onboard", "rotors", "motors", "brake", "camera", "magnet", "faults", "air")
 }
 """Devices that keep something."""
 
@@ -90,4 +92,5 @@ def build_world(scenario: Scenario, scene: Scene, start: Start, drawn: Draw, pha
     camera_numbers.tell(t["camera"], scenario, scene)
     magnet.tell(t["magnet"], scenario, scene)
     faults.tell(t["faults"], scenario, scene, phases)
+    air.tell(t["air"], scenario, scene)
     return world

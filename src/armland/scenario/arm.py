@@ -24,6 +24,7 @@ class Arm(Section):
     joint_speed_rad_s: Annotated[tuple[of.PositiveSpeed, ...], Field(min_length=1, max_length=MOST_JOINTS)] = key(
         (1.92, 1.92, 2.23, 2.23, 2.27, 3.14, 3.14), "rated speed of each joint"
     )
+    width_m: of.Length = key(0.12, "widest part that passes the cradle's slot")
     brake_nm: of.Torque = key(300.0, "friction of a joint whose brake is on; assumption: enough for any pose")
 
 

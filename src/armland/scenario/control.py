@@ -14,9 +14,11 @@ class Station(Section):
     k_velocity: of.Gain = key(3.0, "1/s")
     k_integral: of.Gain = key(1.2, "1/s²")
     speed_max_mps: of.PositiveSpeed = key(0.3, "largest speed asked for")
-    integral_max_mps2: of.PositiveAcceleration = key(3.0, "largest acceleration that the integral asks for")
+    integral_max_mps2: of.PositiveAcceleration = key(5.0, "largest acceleration that the integral asks for")
     tilt_max_rad: Annotated[float, between(1e-3, 1.5)] = key(0.3, "largest tilt asked for")
     rate_hz: of.Rate = key(200, "of the set-points; divides the base rate")
+    gust_share: of.Fraction = key(1.0, "share of the disturbance in the plate filter that is cancelled, horizontally")
+    gust_max_mps2: of.PositiveAcceleration = key(2.0, "largest disturbance that is cancelled")
     hover_s: of.PositiveSeconds = key(1.0, "time constant with which the hover thrust follows the station keeping")
 
 
@@ -25,8 +27,13 @@ class Approach(Section):
 
     track_rad_s: of.PositiveBandwidth = key(12.0, "double pole of the filter on the plate's motion")
     track_max_mps2: of.PositiveAcceleration = key(3.0, "largest acceleration of that filter")
+    track_max_mps: of.PositiveSpeed = key(0.4, "its largest speed, each axis")
+    clearance_m: of.Distance = key(
+        0.015, "of the arm to the slot's rails, beyond which it does not follow the plate sideways"
+    )
     coast_s: of.PositiveSeconds = key(0.06, "in which the reference comes to rest")
     beyond_m: of.Distance = key(0.006, "how far beyond the plate's face the arm would close")
+    lower_mps: of.PositiveSpeed = key(0.03, "speed at which the arm feels for the cradle")
     give_way_mpns: of.Gain = key(3e-3, "m/s per N of hinge force where the arm gives way")
     give_way_max_m: of.Distance = key(4e-3, "largest displacement of giving way")
 

@@ -9,7 +9,17 @@ from armland.scenario.quantities import Section, between, key
 class Hinge(Section):
     """Spherical hinge below the UAV: two crossed axes and the swivel."""
 
-    range_deg: Annotated[float, between(0.1, 85.0)] = key(45.0, "tilt of the UAV on the plate at which it stops")
+    range_deg: Annotated[float, between(0.1, 85.0)] = key(
+        30.0,
+        "tilt of the UAV on the plate at which it stops: one whose rotors stand still leans there, clear of the arm",
+    )
+    stop_nm: of.PositiveCoefficient = key(
+        6.0,
+        "N·m/rad of the rubber at that end: a UAV that falls against it must not break the plate off the magnet; assumption",
+    )
+    stop_nms: of.PositiveCoefficient = key(
+        0.3, "its damping in N·m·s/rad; assumption: three quarters of the critical one"
+    )
     friction_nm: of.Coefficient = key(0.001, "dry friction, each axis")
     damping_nms: of.Coefficient = key(0.001, "viscous friction in N·m·s/rad, each axis")
 
@@ -39,15 +49,27 @@ class Skids(Section):
     """Two tubes across below the UAV, along body y. Their mass is part of the UAV's."""
 
     x_m: of.Length = key(0.15, "of each tube, before and behind the centre of mass: leaves the marker in view")
-    half_length_m: of.Length = key(0.17, "of each tube")
+    half_length_m: of.Length = key(
+        0.19, "of each tube: 4 cm beyond the rails, so that a cradle a little aside still bears it"
+    )
     radius_m: of.Length = key(0.006, "of each tube")
     z_m: of.Coordinate = key(-0.095, "tubes' axis below the centre of mass")
 
 
 class Cradle(Section):
-    """Two round rails that point away from the arm's base, open towards it. It stands where `place.put_down_m` says."""
+    """Two round rails on a frame that rests on four rubber buffers, one below each place where a skid bears.
+
+    They point away from the arm's base, open towards it, and stand, unloaded, where `place.put_down_m` says.
+    """
 
     heading_deg: of.Angle = key(0.0, "of the rails, world")
-    gap_m: of.Length = key(0.196, "clear width of the slot; the arm's widest part that passes measures 0.12 m")
+    gap_m: of.Length = key(
+        0.25, "clear width of the slot: room for the arm to follow a UAV sideways, see `arm.width_m`"
+    )
     length_m: of.Length = key(0.36, "of each rail")
     radius_m: of.Length = key(0.012, "of each rail")
+    mass_kg: of.Mass = key(0.3, "of rails and frame; two aluminium tubes with a wall of 2 mm weigh 0.27 kg")
+    stiffness_npm: of.Gain = key(
+        1e4, "N/m, of each buffer; assumption: rubber of 10 mm and 40 Shore A, docs/touchdown.md"
+    )
+    damping_nspm: of.Coefficient = key(25.0, "of each buffer; assumption: loss factor 0.2 at the touchdown's 13 Hz")

@@ -18,9 +18,10 @@ class Place(Section):
     home_deg: Annotated[tuple[of.Angle, ...], Field(max_length=64)] | None = key(
         None, "joint positions near the catch; searched for if absent"
     )
-    wait_below_m: of.Length = key(0.20, "how far below the catch the arm waits")
+    wait_below_m: of.Length = key(0.24, "how far below the catch the arm waits")
     standoff_m: of.Length = key(0.03, "gap from which the arm closes")
     above_m: of.Length = key(0.05, "height above the rails at which the descent begins")
+    search_m: of.Length = key(0.015, "how far above and below its believed place the cradle is felt for")
     withdraw_m: of.Length = key(0.06, "displacement of the arm downwards after the release")
     takeoff_velocity_mps: of.Velocity3 = key((0.0, 0.0, 0.0), "velocity that the arm gives to a UAV it lets go")
     launch_m: of.Point = key((0.40, 0.0, 0.92), "where the run-up to that velocity leads through")
@@ -47,11 +48,14 @@ class Bounds(Section):
     uav_speed_mps: of.PositiveSpeed = key(0.15, "speed of the UAV at which the arm approaches")
     align_offset_m: of.Length = key(0.004, "horizontal offset at which the arm closes")
     align_speed_mps: of.PositiveSpeed = key(0.06, "relative speed at which the arm closes")
-    align_tilt_deg: of.Tilt = key(6.0, "tilt of the UAV at which the arm closes")
+    align_tilt_deg: of.Tilt = key(10.0, "tilt of the UAV at which the arm closes")
     lost_offset_m: of.Length = key(0.006, "offset at which closing is given up")
+    slipped_m: of.Length = key(
+        0.010, "offset of a plate that was gripped, reckoned and in the images, at which the grip is tried anew"
+    )
     pull_test_n: of.PositiveForce = key(0.8, "pull of the rotors that tests the grip")
     pull_seen_n: of.PositiveForce = key(0.35, "hinge force that proves it")
-    share_carried: of.PositiveFraction = key(0.3, "share of the weight on the arm at which it carries")
+    share_carried: of.PositiveFraction = key(0.2, "share of the weight on the arm at which it carries")
     share_touched: of.PositiveFraction = key(0.15, "share on the cradle at which it has been touched")
     share_resting: Annotated[float, between(1e-6, 0.999)] = key(0.85, "share on the cradle at which the magnet opens")
     force_free_n: of.PositiveForce = key(1.2, "hinge force below which the magnet opens")
@@ -62,10 +66,10 @@ class Bounds(Section):
     thrust_left_n: of.PositiveForce = key(0.05, "distance of the thrust to the ramp's end at which it is over")
     arm_error_m: of.Length = key(0.005, "distance of the arm to its reference at which a move is over")
     let_go_m: of.Length = key(0.01, "gap at which a plate has come off the magnet")
-    level_tilt_deg: of.Tilt = key(2.0, "tilt below which a UAV is let go")
+    level_tilt_deg: of.Tilt = key(2.0, "lean against the attitude asked for below which a UAV is let go")
     settled_s: of.Seconds = key(0.3, "least time of a phase that waits for rest")
     coil_off_s: of.Seconds = key(0.2, "time after which a magnet that was switched off has surely let go")
-    retries: Annotated[int, Field(ge=0, le=1000)] = key(3, "number of missed captures before the landing is given up")
+    retries: Annotated[int, Field(ge=0, le=1000)] = key(6, "number of missed captures before the landing is given up")
 
 
 class Limits(Section):
@@ -77,14 +81,13 @@ class Limits(Section):
     joint_margin_rad: of.Fraction = key(0.02, "distance to a joint's end at which only motion away is left")
     sigma_min: Annotated[float, between(1e-6, 1.0)] = key(0.03, "ratio: smallest singular value of the Jacobian")
     uav_age_ms: of.PositiveMilliseconds = key(250.0, "age of the UAV's sample at which it counts as silent")
-    camera_age_ms: of.PositiveMilliseconds = key(500.0, "age of the camera's sample at which it counts as blind")
+    camera_age_ms: of.PositiveMilliseconds = key(2000.0, "age of the camera's sample at which it counts as blind")
     arm_age_ms: of.PositiveMilliseconds = key(5.0, "age of the joints' sample at which the arm is stopped")
     wrench_age_ms: of.PositiveMilliseconds = key(
         20.0, "age of the force-torque sensor's sample at which it counts as dead"
     )
     slip_m: of.Length = key(0.010, "offset of the held plate, as the camera sees it, that counts as slipped off")
     tilt_deg: of.Tilt = key(30.0, "tilt of the UAV at which it counts as out of control")
-    capture_deg: of.Tilt = key(3.0, "tilt plus tilt rate over the rate of fall at which a UAV on the hinge falls")
     balance_push_mps2: of.PositiveAcceleration = key(15.0, "largest acceleration with which the arm balances")
     balance_reach_m: of.Length = key(0.11, "how far the arm may move a UAV that it balances, each axis")
     carried_n: of.PositiveForce = key(20.0, "hinge force that no healthy flight makes while nothing meets")

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 from armland.scenario import quantities as of
 from armland.scenario.arm import Arm, Tool
 from armland.scenario.control import Control, Experiment
+from armland.scenario.deviation import Deviation
 from armland.scenario.environment import Disturbance, Environment
 from armland.scenario.estimation import Estimation
 from armland.scenario.faults import Fault
@@ -38,7 +39,7 @@ HARDWARE = (
 )
 """Sections of which the controller has a belief of its own."""
 
-PLANT_ONLY = ("imperfections", "disturbance", "faults")
+PLANT_ONLY = ("imperfections", "deviation", "disturbance", "faults")
 """Sections that the controller never sees."""
 
 
@@ -74,6 +75,7 @@ class Scenario(Section):
     sensors: Sensors = Sensors()
     environment: Environment = Environment()
     imperfections: Imperfections = Imperfections()
+    deviation: Deviation = Deviation()
     disturbance: Disturbance = Disturbance()
     control: Control = Control()
     estimation: Estimation = Estimation()

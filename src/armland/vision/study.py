@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from armland.errors import PictureError
 from armland.plant.devices.camera import observe, visible
-from armland.plant.devices.camera_numbers import camera_told, kept_layout, noise_through
+from armland.plant.devices.camera_numbers import camera_told, kept_layout, noise_through, well
 from armland.plant.noise import CAMERA_WIDTH, stream
 from armland.rotations import Array, from_rotation_vector, matrix, multiply, rotation_error
 from armland.scenario.sensing import Camera, Imperfections
@@ -191,13 +191,13 @@ def model_errors(motions: list[Motion], camera: Camera, draws: int, seed: int = 
 
 
 def _model_error(motion: Motion, camera: Camera, told: NDArray[np.void], noise: Array, error: np.void) -> None:
-    kept = np.zeros(1, kept_layout(0))
+    kept, errors = np.zeros(1, kept_layout(0)), well()
     kept["eye"], kept["eye_quat"], kept["mark_quat"] = ORIGIN, LEVEL, motion.quat
     told["lose"], kept["mark"] = 0.0, motion.position - 1e-3 * motion.velocity
-    observe(0, noise[0], False, told[0], kept[0])
+    observe(0, noise[0], errors[0], told[0], kept[0])
     told["lose"], kept["lost"] = camera.lose / (1.0 + camera.lose - camera.stay_lost), 0
     kept["mark"] = motion.position
-    observe(1, noise[1], False, told[0], kept[0])
+    observe(1, noise[1], errors[0], told[0], kept[0])
     sample = kept["sample"][0]
     error["distance"], error["found"] = motion.position[2], bool(sample["fresh"])
     if error["found"]:

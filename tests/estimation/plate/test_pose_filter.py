@@ -19,6 +19,7 @@ from armland.estimation.plate.pose_filter import (
     STARTED,
     UNUSABLE,
     fuse,
+    learn_noise,
     predict,
 )
 from armland.estimation.plate.reckoning import advance, present
@@ -230,7 +231,7 @@ def test_prediction_beats_waiting(motion):
     assert (rms((motion.plate[:-ahead] - truth)[window])[:2] > 4.0 * error[:2]).all()
 
 
-def wander(runs, walk=0.3, white=0.05, sigma=SIGMA, seconds=3.0):
+def wander(runs, walk=0.3, white=0.05, sigma=SIGMA, seconds=3.0, learns=True):
     """Squared errors of (p, v, b) once a second and squared innovations, under the very noise that the filter assumes."""
     p = settings(marker_offset=(0.0, 0.0, 0.0), sigma_attitude=1e-6, gate=np.inf)
     level, still, errors, distances = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3), [], []
@@ -248,6 +249,8 @@ def wander(runs, walk=0.3, white=0.05, sigma=SIGMA, seconds=3.0):
                 sample["camera_quat"] = quats(Rotation.from_rotvec(rng.normal(size=3) * SIGMA[3:]) * FACE)
                 sample["camera_position"] = x[k] + rng.normal(size=3) * sigma[:3]
                 arrivals[k + int(rng.integers(50, 76))] = sample
+            if not learns:
+                s["noise"] = 1.0
             if k in arrivals and fuse(arrivals[k][0], p[0], s[0]) == FUSED and k > 500:
                 distances.append(s["distance"][0, 0])
             if k % 1000 == 999:
@@ -259,7 +262,7 @@ def wander(runs, walk=0.3, white=0.05, sigma=SIGMA, seconds=3.0):
 
 @pytest.mark.parametrize(
     ("changes", "consistent"),
-    [({}, True), ({"sigma": 1.5 * SIGMA}, False), ({"walk": 1.5}, False)],
+    [({}, True), ({"sigma": 1.5 * SIGMA, "learns": False}, False), ({"walk": 1.5}, False)],
 )
 def test_errors_and_innovations_are_as_large_as_the_covariance_says(changes, consistent):
     """NEES with 9 and NIS with 3 degrees of freedom, two-sided at 0.1 %; controls: noise or gusts beyond what is assumed."""
@@ -267,6 +270,13 @@ def test_errors_and_innovations_are_as_large_as_the_covariance_says(changes, con
     levels = [chi2(9 * len(errors)).cdf(errors.sum()), chi2(3 * len(distances)).cdf(distances.sum())]
     inside = [0.0005 < level < 0.9995 for level in levels]
     assert all(inside) if consistent else not any(inside)
+
+
+def test_errors_stay_as_large_as_the_covariance_says_where_the_noise_is_learnt():
+    """At three times the claimed noise: within two sigma of the learnt ratio's own scatter, 13 %; as claimed it is far out."""
+    learnt, frozen = (wander(16, sigma=3.0 * SIGMA, learns=learns)[0].mean() / 9.0 for learns in (True, False))
+    assert learnt == pytest.approx(1.0, abs=0.26)
+    assert frozen > 2.0
 
 
 def test_stale_camera_costs_certainty_and_then_validity(motion):
@@ -614,3 +624,76 @@ def test_attitude_between_samples_turns_on_with_the_rates_until_they_are_too_old
     blind = s["track"]["blind"][0]
     assert blind[130] == 0
     assert blind[159] == 29
+
+
+def learnt_noise(times, samples=4000, seed=2, outliers=0.0):
+    """Variance ratios that are learnt of samples whose noise is `times` what is claimed, weighed by what was learnt so far."""
+    s, rng, out = np.zeros(1, kept_layout()), np.random.default_rng(seed), []
+    s["noise"] = 1.0
+    for _ in range(samples):
+        squared = float(rng.chisquare(3)) * times**2
+        learn_noise((1e6 if rng.random() < outliers else squared) / s["noise"][0], s[0])
+        out.append(s["noise"][0])
+    return np.array(out)
+
+
+@pytest.mark.parametrize("times", [1.5, 2.0, 3.0, 5.0])
+def test_noise_that_is_more_than_claimed_is_learnt(times):
+    """Its variance: E min(χ²₃/3, 4) is 0.99, and what one sample changes scatters the ratio by √(0.05/2 · 2/3) = 13 %."""
+    found = np.log(learnt_noise(times)[200:] / times**2)
+    assert found.mean() == pytest.approx(0.0, abs=0.05)
+    assert found.std() < 0.2
+
+
+@pytest.mark.parametrize("times", [1.0, 0.5, 0.1])
+def test_honest_camera_is_believed_and_one_that_errs_less_gains_nothing(times):
+    """Held at 1 from below, the ratio of an honest one wanders by its 13 % above it and no further."""
+    found = learnt_noise(times)
+    assert found.min() >= 1.0
+    assert found.mean() < 1.15
+    if times < 1.0:
+        assert found[100:].max() < 1.1
+
+
+def test_outliers_alone_are_not_taken_for_noise():
+    """One in 200, however far off, says no more than four times the mean: 1.5 % of the ratio."""
+    assert learnt_noise(1.0, outliers=0.005).mean() < 1.2
+
+
+def test_noise_that_was_learnt_goes_again():
+    s = np.zeros(1, kept_layout())
+    s["noise"] = 9.0
+    for _ in range(60):
+        learn_noise(3.0 / 9.0, s[0])
+    assert s["noise"] < 1.5
+
+
+def test_noise_has_a_largest():
+    assert learnt_noise(100.0).max() == 36.0
+
+
+@pytest.mark.parametrize(("times", "low", "high"), [(1.0, 1.0, 1.4), (3.0, 6.0, 11.0)])
+def test_filter_learns_of_a_camera_that_claims_too_little(times, low, high):
+    """In flight, by what is seen beside what was predicted: its samples are neither gated nor trusted too much."""
+    p, s = settings(), np.zeros(1, kept_layout())
+    motion, arrivals, ratios, answers = swaying(ticks=12_000), {}, [], []
+    for k in range(motion.ticks):
+        taken = max(k - 12, 0) // LINK * LINK
+        tick(
+            k,
+            taken,
+            motion.report[taken],
+            motion.rate[taken],
+            motion.thrust[k],
+            motion.eye[k],
+            motion.view_quat[k],
+            p,
+            s,
+        )
+        if k % PERIOD == 0:
+            arrivals[k + 60] = image(motion, k, times * SIGMA)
+        if k in arrivals:
+            answers.append(fuse(arrivals[k][0], p[0], s[0]))
+            ratios.append(s["noise"][0])
+    assert low <= np.mean(ratios[120:]) <= high
+    assert np.mean(np.array(answers[60:]) == FUSED) > 0.97

@@ -8,6 +8,16 @@ import pytest
 from armland.experiments.judge.brief import brief_of
 from armland.records import tick_layout
 
+SCREWS = {
+    "joint": [0, 1, 2],
+    "hinge": [True, True, True],
+    "q": [0.0, -0.5 * np.pi, 0.0],
+    "anchor": [[0.0, 0.0, 0.5]] * 3,
+    "axis": [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    "ee": [0.0, 0.0, 0.5],
+}
+"""A wrist: its outer axes cross at a right angle where q is zero, and coincide where the middle joint is at −90°."""
+
 PHASES = ("guide", "close", "carry", "release", "done", "abort", "holding")
 
 METADATA = {
@@ -16,6 +26,10 @@ METADATA = {
     "period_ns": "1000000",
     "phases": ",".join(PHASES),
     "finals": "done,abort,holding",
+    "on_cradle": "release,done",
+    "hold": json.dumps({"rating_n": 100.0, "shear_share": 0.2, "share": 0.6}),
+    "screws": json.dumps(SCREWS),
+    "gravity": "9.81",
     "faults": "none,uav_silent,slip",
     "limits": json.dumps(
         {

@@ -8,6 +8,7 @@ import pytest
 from armland.errors import LogError
 from armland.experiments.judge.brief import brief_of, metadata_of
 from armland.mission.plan import plan
+from armland.plant.scene.composition import build_scene
 from armland.scenario import Scenario
 
 
@@ -35,18 +36,23 @@ def test_metadata_that_says_too_little_or_nonsense_is_refused(metadata):
 
 def test_metadata_is_text_and_says_what_a_report_needs(landing_scenario):
     made = plan(landing_scenario, "landing")
-    found = metadata_of(landing_scenario, made, np.array([0.68, 0.0, 0.701]))
+    found = metadata_of(landing_scenario, made, build_scene(landing_scenario, "free"))
     assert all(isinstance(value, str) for value in found.values())
     assert found["phases"].split(",")[: len(made.names)] == list(made.names)
     assert json.loads(found["limits"])["hinge_max"] == made.told["limit"]["hinge_max"][0]
-    assert json.loads(found["put_down"]) == [0.68, 0.0, 0.701]
+    assert json.loads(found["put_down"]) == pytest.approx([0.68, 0.0, 0.701])
+    assert json.loads(found["hold"]) == {"rating_n": 177.0, "shear_share": 0.2, "share": 0.6}
+    assert found["on_cradle"] == "set_down,unload,release,withdraw,done,balancing,secured,braked_down"
+    assert json.loads(found["screws"])["joint"] == list(range(7))
+    assert float(found["gravity"]) == pytest.approx(9.81, abs=0.01)
     assert Scenario.model_validate_json(found["scenario"]).model_dump() == landing_scenario.model_dump()
     assert (found["law"], found["experiment"], found["start"]) == ("exact", "", "air")
 
 
 def test_limits_that_a_mission_does_not_have_are_left_out(paper_scenario):
-    found = metadata_of(paper_scenario, plan(paper_scenario, "E2"), np.full(3, np.nan))
+    found = metadata_of(paper_scenario, plan(paper_scenario, "E2"), build_scene(paper_scenario, "hinged"))
     assert "hinge_max" not in json.loads(found["limits"])
+    assert json.loads(found["hold"]) is None
     assert json.loads(found["put_down"]) == [0.0, 0.0, 0.0]
     assert len(json.loads(found["legs"])) == 4
     assert found["experiment"] == "E2"

@@ -61,9 +61,12 @@ def test_bounds_are_the_missions_criteria_and_the_limits_that_there_are(brief):
         "touchdown.offset_m": 0.01,
         "rest.speed_mps": 0.01,
         "hinge_force_max_n": 106.2,
+        "magnet_pull_max_n": 60.0,
+        "magnet_shear_max_ratio": 0.6,
+        "fall_m": 0.1,
         "joint_torque_max_ratio": 1.0,
     }
-    assert bounds(brief._replace(criteria=(), limits={})) == {}
+    assert bounds(brief._replace(criteria=(), limits={}, hold=None)) == {}
 
 
 def test_bounds_of_a_landing_are_its_criteria(landing_scenario):

@@ -5,8 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from armland.experiments.judge.judgement import end_of, judge, last_flown, limits_violated, phase_times
+from armland.experiments.episode import fly
+from armland.experiments.judge.judgement import end_of, judge, last_flown, phase_times
 from armland.mission.supervisor.remedies import REMEDIES
+from armland.scenario import load_scenario
 
 
 def test_a_landing_that_keeps_all_bounds_succeeds(ticks, brief):
@@ -94,32 +96,46 @@ def test_messages_of_a_log_are_judged_like_ticks(ticks, brief):
     assert judge(messages, brief) == judge(ticks, brief)
 
 
-@pytest.mark.parametrize(
-    ("message", "field", "index", "value", "name"),
-    [
-        ("measurement", "q", (50, 2), 2.1, "joint_position"),
-        ("measurement", "q", (50, 2), -2.1, "joint_position"),
-        ("measurement", "qd", (50, 2), -2.0, "joint_speed"),
-        ("truth", "tau", (slice(None), 3), -100.1, "joint_torque"),
-        ("truth", "tau", (50, 3), 1.6, "torque_rate"),
-        ("health", "sigma_min", 50, 0.02, "singularity"),
-        ("truth", "hinge_force", (50, 0), 110.0, "hinge_force"),
-        ("truth", "foul", (50, 0), 0.1, "arm_touched_cradle"),
-        ("truth", "foul", (50, 1), 0.1, "arm_touched_floor"),
-        ("truth", "foul", (50, 2), 0.1, "arm_touched_uav"),
-    ],
-)
-def test_each_limit_is_found(ticks, brief, message, field, index, value, name):
-    assert limits_violated(ticks, brief) == []
-    ticks[message][field][index] = value
-    assert limits_violated(ticks, brief) == [name]
-    judged = name.startswith("arm_touched")
-    assert limits_violated(ticks, brief._replace(limits={})) == ([name] if judged else [])
+def test_a_contact_before_its_phase_is_no_landing(ticks, brief):
+    """The same contact, later, is the touchdown: its figures are of that one."""
+    ticks["truth"]["cradle_force"][1200:1210, 1] = 41.0
+    ticks["truth"]["v"][1190:1210, 2] = -0.4
+    j = judge(ticks, brief)
+    assert not j.success
+    assert j.reason == "limits violated: uav_touched_cradle (in close at 1.20 s, up to 41 N, at 0.40 m/s)"
+    assert j.figures["touchdown"]["speed_mps"] == pytest.approx(0.1)
+    assert judge(ticks, brief._replace(on_cradle=brief.on_cradle | {"close"})).limits_violated == []
 
 
-def test_the_torque_that_appears_in_the_first_tick_is_no_jump(ticks, brief):
-    ticks["truth"]["tau"][2:, 1] = 40.0
-    assert limits_violated(ticks, brief) == []
+def test_a_uav_that_only_hit_the_rails_early_never_stood(ticks, brief):
+    ticks["truth"]["cradle_force"][:] = 0.0
+    ticks["truth"]["cradle_force"][1200:1210, 2] = 41.0
+    assert "the UAV never stood on the cradle" in judge(ticks, brief).reason
+
+
+def test_cause_stands_before_the_end_and_what_followed_after_it(ticks, brief):
+    ticks["mission"]["phase"][1500:] = brief.phases.index("abort")
+    ticks["mission"]["fault"][1500:] = 1
+    ticks["truth"]["foul"][1200:1600, 0] = 12.0
+    ticks["truth"]["foul"][1700, 4] = 3.0
+    ticks["truth"]["ee_v"][1198] = [0.0, 0.3, 0.0]
+    reason = judge(ticks, brief).reason
+    first = (
+        "limits violated: arm_touched_cradle (in close at 1.20 s, up to 12 N, at 0.30 m/s); ended in abort after close"
+    )
+    assert reason.startswith(first)
+    assert "; then limits violated: uav_touched_floor (in abort at 1.70 s, up to 3 N, at 0.10 m/s)" in reason
+
+
+def test_whole_flights_figures_are_in_the_result(ticks, brief):
+    ticks["truth"]["hinge_force"][1200] = [6.0, 8.0, -50.0]
+    ticks["truth"]["v_cm"][1999, 2] = -0.1
+    result = judge(ticks, brief).result()
+    assert result["magnet_pull_max_n"] == pytest.approx(50.0)
+    assert result["magnet_shear_max_n"] == pytest.approx(10.0)
+    assert result["magnet_shear_max_ratio"] == pytest.approx(1.0)
+    assert result["fall_m"] == pytest.approx(0.1**2 / (2 * 9.81))
+    assert judge(ticks, brief._replace(hold=None)).magnet_pull_max_n is None
 
 
 def test_phases_join_without_gaps(ticks, brief):
@@ -136,3 +152,18 @@ def test_an_end_that_another_follows_is_no_phase_of_the_mission(ticks, brief):
 
 def test_a_mission_that_has_not_ended_was_last_in_its_phase(ticks, brief):
     assert last_flown(ticks[:1800], brief) == "carry"
+
+
+def test_an_arm_that_is_pushed_into_the_cradle_has_failed_for_that_reason():
+    push = {"kind": "push", "phase": "guide", "after_s": 0.05, "size": 100.0, "body": "elbow"}
+    scenario = load_scenario("landing", {"faults": [{**push, "direction": [0.0, 1.0, 0.0]}]})
+    j = fly(scenario, "landing", 1).judgement
+    assert not j.success
+    assert j.reason.startswith("limits violated: arm_touched_cradle (in align at ")
+
+
+def test_a_uav_that_was_pushed_aside_and_came_back_lands_all_the_same():
+    push = {"kind": "push", "phase": "approach", "after_s": 0.3, "lasts_s": 1.0, "size": 0.15, "body": "uav"}
+    scenario = load_scenario("landing", {"faults": [{**push, "direction": [0.0, 1.0, 0.0]}]})
+    j = fly(scenario, "landing", 1).judgement
+    assert (j.success, j.limits_violated) == (True, [])

@@ -28,9 +28,12 @@ def test_held_needs_all_pads_and_an_upright_uav(ticks, brief):
     held["truth"]["r"][:, 2] = 0.5
     assert state_of(held, brief) == "lost"
     held["truth"]["touching"] = 4
-    held["truth"]["quat"] = from_rotation_vector(np.array([0.6, 0.0, 0.0]))
+    # One without thrust leans on the hinge's stops.
+    held["truth"]["quat"] = from_rotation_vector(np.deg2rad([45.0, 0.0, 0.0]))
+    assert state_of(held, brief) == "held"
+    held["truth"]["quat"] = from_rotation_vector(np.deg2rad([47.0, 0.0, 0.0]))
     assert state_of(held, brief) == "lost"
-    assert "toppled by 34°" in in_words(held, brief)
+    assert "toppled by 47°" in in_words(held, brief)
 
 
 def test_flying_within_what_it_was_given(ticks, brief):

@@ -25,6 +25,16 @@ def test_magnet_is_on_from_the_closing_to_the_release(phases):
     assert on == ["close", "capture", "hand_over", "carry", "set_down", "unload"]
 
 
+def test_uav_may_touch_the_cradle_from_the_set_down_on(phases):
+    assert [n for n, p in phases.items() if p.on_cradle and not p.final] == [
+        "set_down",
+        "unload",
+        "release",
+        "withdraw",
+    ]
+    assert phases["done"].on_cradle
+
+
 def test_capture_that_is_missed_is_tried_again_until_it_has_been_too_often(phases):
     targets = [g.target for g in phases["miss"].guards]
     assert targets == ["abort", "guide"]

@@ -133,3 +133,11 @@ def test_uav_that_cannot_hover_is_never_asked_to():
 )
 def test_speed_in_any_direction_is_one_and_so_is_that_of_a_uav_that_flies_on(place, speed):
     assert gives_speed(load_scenario("landing", {"place": place})) == speed
+
+
+def test_uav_may_touch_the_cradle_up_to_the_lift_and_not_in_the_end():
+    before = ["self_test", "reach", "touch", "grip", "spin_up", "lift"]
+    for phases in (PLAIN, THROWN):
+        assert [n for n, p in phases.items() if p.on_cradle and not p.final] == before
+        assert not phases["done"].on_cradle
+        assert phases["refused"].on_cradle

@@ -3,11 +3,27 @@
 import numpy as np
 import pytest
 
-from armland.mission.reference.moves import BACK_OFF, CLOSE, HOLD, JOIN, LAUNCH, LEAVE, MOVE, TRACK, YIELD, begin, move
+from armland.mission.reference.moves import (
+    BACK_OFF,
+    CLOSE,
+    HOLD,
+    JOIN,
+    LAUNCH,
+    LEAVE,
+    LOWER,
+    LOWER_S,
+    MOVE,
+    NOD,
+    NOD_M,
+    TRACK,
+    YIELD,
+    begin,
+    move,
+)
 from armland.mission.reference.refer import kept_layout, told_layout
 from armland.records import layout
 
-ALL = [HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, LAUNCH, LEAVE]
+ALL = [HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, LAUNCH, LEAVE, LOWER, NOD]
 
 
 @pytest.fixture
@@ -17,7 +33,7 @@ def made():
     p["tick_s"], p["coast"], p["standoff"], p["beyond"], p["depth"] = 1e-3, 0.06, 0.03, 0.006, 0.06
     p["targets"][0, 1] = [0.7, 0.1, 0.8]
     p["launch"], p["launch_s"], p["leave_s"] = [0.5, -0.2, 0.1], 0.6, 0.35
-    p["give_way"], p["give_way_max"] = 3e-3, 4e-3
+    p["give_way"], p["give_way_max"], p["lower"], p["search"] = 3e-3, 4e-3, 0.03, 0.015
     s["r0"], s["v0"] = [0.6, 0.0, 0.7], [0.05, -0.02, 0.1]
     s["p"], s["pv"] = [0.62, 0.01, 0.86], [0.02, 0.01, -0.01]
     return p, s, np.zeros(1, layout("estimate", 7)), np.zeros(1, layout("reference", 7))
@@ -49,7 +65,7 @@ def test_acceleration_of_the_plate_is_the_arms_as_well(made, mode):
     np.testing.assert_allclose(at(made, mode, 1.6)[2], [0.3, -0.2, 0.4], atol=1e-12)
 
 
-@pytest.mark.parametrize("mode", [JOIN, CLOSE, MOVE, BACK_OFF, LAUNCH, LEAVE])
+@pytest.mark.parametrize("mode", [JOIN, CLOSE, MOVE, BACK_OFF, LAUNCH, LEAVE, NOD])
 def test_jerk_does_not_step_within_a_phase(made, mode):
     """C³: no jump of the third derivative beyond what the fourth makes of a step of time; the plate at rest."""
     made[1]["pv"] = 0.0
@@ -61,7 +77,7 @@ def test_jerk_does_not_step_within_a_phase(made, mode):
     assert np.abs(np.diff(jerk, axis=0)).max() < 840.0 * 0.06 / 0.35**4 * h * 2.0 + 5e-2
 
 
-@pytest.mark.parametrize("mode", [HOLD, MOVE, BACK_OFF, YIELD, LAUNCH, LEAVE])
+@pytest.mark.parametrize("mode", [HOLD, MOVE, BACK_OFF, YIELD, LAUNCH, LEAVE, LOWER, NOD])
 def test_reference_begins_where_the_last_one_was_at_its_speed(made, mode):
     r, v, _, _ = at(made, mode, 0.0)
     np.testing.assert_allclose(r, made[1]["r0"][0])
@@ -104,7 +120,7 @@ def test_arm_that_leaves_sinks_by_the_depth_and_comes_to_rest(made):
     np.testing.assert_allclose(r - s["r0"][0], wanted, atol=1e-12)
 
 
-@pytest.mark.parametrize("mode", [HOLD, MOVE, BACK_OFF])
+@pytest.mark.parametrize("mode", [HOLD, MOVE, BACK_OFF, LOWER])
 def test_only_an_arm_that_yields_follows_the_hinges_force(made, mode):
     calm = at(made, mode, 0.5)
     made[2]["hinge_force"] = [5.0, -4.0, 3.0]
@@ -165,3 +181,46 @@ def test_arm_that_goes_on_giving_way_keeps_what_it_has_given(made):
     begin(YIELD, YIELD, False, e[0], s[0])
     np.testing.assert_allclose(s["r0"][0], 0.497)
     np.testing.assert_array_equal(s["yielded"][0], 0.003)
+
+
+def test_arm_that_feels_for_the_cradle_moves_as_one_that_does_not_until_half_way(made):
+    for t in (0.0, 0.3, 0.75):
+        for felt, moved in zip(at(made, LOWER, t), at(made, MOVE, t), strict=True):
+            np.testing.assert_array_equal(felt, moved)
+
+
+def test_arm_feels_for_the_cradle_downwards_alone_at_its_speed(made):
+    """Blended in over `LOWER_S`, in which it covers half of what it would at full speed."""
+    since = 0.5
+    felt, moved = at(made, LOWER, 0.75 + since), at(made, MOVE, 0.75 + since)
+    np.testing.assert_allclose(felt[0] - moved[0], [0.0, 0.0, -0.03 * (since - 0.5 * LOWER_S)], atol=1e-12)
+    np.testing.assert_allclose(felt[1] - moved[1], [0.0, 0.0, -0.03], atol=1e-12)
+    np.testing.assert_allclose(felt[2], moved[2], atol=1e-12)
+
+
+@pytest.mark.parametrize("t", [2.5, 4.5, 60.0])
+def test_arm_feels_for_the_cradle_no_deeper_than_twice_the_search(made, t):
+    """From as far above the believed place to as far below: it passes every place where the cradle may be, and rests there."""
+    r, v, a, _ = at(made, LOWER, t)
+    np.testing.assert_allclose(r, [0.7, 0.1, 0.8 - 0.03], atol=1e-9)
+    np.testing.assert_allclose(v, 0.0, atol=1e-9)
+    np.testing.assert_allclose(a, 0.0, atol=1e-9)
+
+
+def test_cradle_anywhere_in_the_band_is_met_no_faster_than_the_descent(made):
+    """Once the move is over, it is the descent's speed alone that meets the rails."""
+    t = np.arange(1.5, 3.0, 1e-3)
+    speed = np.array([at(made, LOWER, x)[1] for x in t])
+    assert np.abs(speed).max() <= 0.03 + 1e-6
+    assert (speed[:, 2] <= 1e-6).all()
+
+
+def test_arm_that_nods_goes_out_by_its_way_on_each_axis_and_back(made):
+    made[1]["v0"] = 0.0
+    start = made[1]["r0"][0]
+    np.testing.assert_allclose(at(made, NOD, 0.25, 0.5)[0] - start, NOD_M, atol=1e-12)
+    for t in (0.5, 0.9):
+        r, v, a, _ = at(made, NOD, t, 0.5)
+        np.testing.assert_allclose(r, start, atol=1e-12)
+        np.testing.assert_allclose([v, a], 0.0, atol=1e-9)
+    assert max(np.abs(at(made, NOD, t, 0.5)[0] - start).max() for t in np.linspace(0.0, 0.5, 51)) <= NOD_M + 1e-12

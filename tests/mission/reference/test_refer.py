@@ -55,6 +55,8 @@ def test_mission_with_a_path_follows_it_by_its_tick(bench, tick, row, progress):
 def test_arm_that_joins_begins_to_track_where_the_plate_is(bench):
     """Without an acceleration, and with the plate's own speed; other phases leave the filter alone."""
     e, s = bench.e, bench.kept["refer"]
+    p = bench.told["refer"]
+    p["room"] = [[-10.0] * 3, [10.0] * 3]
     e["plate"], e["plate_v"], s["p"], s["pv"], s["pa"] = [0.7, 0.1, 0.9], [0.1, 0.0, -0.1], 9.0, 9.0, 9.0
     begin_reference(bench.plan.number("approach"), bench.plan.number("align"), bench.b)
     np.testing.assert_array_equal(s["p"], 9.0)
@@ -63,7 +65,8 @@ def test_arm_that_joins_begins_to_track_where_the_plate_is(bench):
 
 
 def test_plate_is_tracked_whatever_the_arm_does(bench):
-    bench.kept["refer"]["p"], bench.kept["refer"]["pv"], bench.e["plate"] = 0.5, 0.0, 0.6
+    middle = bench.plan.scenario.place.catch_m
+    bench.kept["refer"]["p"], bench.kept["refer"]["pv"], bench.e["plate"] = middle, 0.0, np.array(middle) + 0.02
     reference(bench, "guide")
     assert (bench.kept["refer"]["pv"] > 0.0).all()
 

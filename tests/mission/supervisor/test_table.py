@@ -75,7 +75,51 @@ def test_no_end_lets_a_held_uav_go_without_its_thrust():
 def test_no_end_stops_a_flying_uav():
     for fault, row in FAULT_TABLE.items():
         end = next((p for p in FINALS if p.name == row["flight"]), None)
-        assert end is None or end.uav == "autonomous", fault
+        # One whose plate sticks does not fly: it stays on the arm with the thrust that it has.
+        flown_on = ("level", "on") if fault == "magnet_stuck" else ("autonomous", "off")
+        assert end is None or (end.uav, end.magnet) == flown_on, fault
+
+
+def test_uav_without_power_is_kept_where_the_arm_has_it_and_made_room_for_where_it_has_not():
+    row = FAULT_TABLE["power_lost"]
+    assert (row["held"], row["flight"], row["touch"]) == ("holding", "abort", "abort")
+
+
+def test_blind_camera_matters_only_where_the_arm_goes_by_it():
+    for fault in ("camera_stale", "camera_leap", "camera_noise"):
+        assert FAULT_TABLE[fault] == FAULT_TABLE["camera_stale"]
+        assert FAULT_TABLE[fault]["held"] == FAULT_TABLE[fault]["cradle"] == "-"
+
+
+def test_frozen_encoder_leads_where_a_stale_arm_leads_from_every_end():
+    assert FAULT_TABLE["encoder_frozen"] == FAULT_TABLE["arm_stale"]
+    for end, row in ESCALATION.items():
+        assert row.get("encoder_frozen") == row.get("arm_stale"), end
+
+
+def test_graver_of_two_that_show_together_stands_first():
+    """A frozen joint is no stale arm, a UAV without power is silent too, a sensor that is wrong drifts, a stuck plate pulls."""
+    for first, second in (
+        ("encoder_frozen", "arm_stale"),
+        ("power_lost", "uav_silent"),
+        ("wrench_wrong", "wrench_drift"),
+        ("magnet_stuck", "overload"),
+        ("arm_blocked", "near_limit"),
+        ("thrust_lost", "uav_tilt"),
+    ):
+        assert FAULT[first] < FAULT[second]
+
+
+def test_what_is_told_apart_by_time_is_debounced_in_that_order():
+    ticks = debounce_ticks(1e-3)
+    for first, second in (
+        ("power_lost", "uav_silent"),
+        ("magnet_stuck", "wrench_drift"),
+        ("encoder_frozen", "near_limit"),
+        ("wrench_wrong", "wrench_drift"),
+        ("rotor_lost", "slip"),
+    ):
+        assert ticks[FAULT[first]] < ticks[FAULT[second]]
 
 
 def test_no_end_leaves_the_arm_without_stiffness():

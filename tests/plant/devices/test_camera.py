@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import chisquare
 
 from armland.plant.devices.camera import observe, visible
-from armland.plant.devices.camera_numbers import SAMPLE, camera_told, kept_layout
-from armland.plant.devices.detector_errors import DETECTOR
+from armland.plant.devices.camera_numbers import SAMPLE, camera_told, kept_layout, well
+from armland.plant.devices.detector_errors import DETECTOR, second_pose
 from armland.plant.noise import CAMERA_WIDTH, stream
 from armland.scenario.sensing import Camera
 
@@ -22,7 +22,7 @@ def other(camera=STEADY, **changes):
 
 
 @njit(cache=True)
-def run(eye, mark, noise, frozen, told, kept, arrival, samples):
+def run(eye, mark, noise, frozen, errors, told, kept, arrival, samples):
     found = 0
     for k in range(len(noise)):
         s = kept[0]
@@ -30,7 +30,8 @@ def run(eye, mark, noise, frozen, told, kept, arrival, samples):
             s.eye[i], s.mark[i] = eye[k, i], mark[k, i]
         for i in range(4):
             s.eye_quat[i], s.mark_quat[i] = eye[k, 3 + i], mark[k, 3 + i]
-        observe(k, noise[k], frozen[k], told[0], s)
+        errors[0].frozen = frozen[k]
+        observe(k, noise[k], errors[0], told[0], s)
         if s.sample.fresh:
             arrival[found] = k
             samples[found].capture = s.sample.capture
@@ -54,8 +55,13 @@ class Seen:
         return self.samples[name]
 
 
-def watch(ticks, camera=STEADY, offset=(0.0, 0.0, 0.5), quat=FACING, frozen=None, base_hz=1000, eye=None, **told):
-    """Run the camera; `offset` of the marker may be a function of the tick, `eye` = (position, quat) is the camera."""
+def watch(
+    ticks, camera=STEADY, offset=(0.0, 0.0, 0.5), quat=FACING, frozen=None, base_hz=1000, eye=None, fails=None, **told
+):
+    """Run the camera; `offset` of the marker may be a function of the tick, `eye` = (position, quat) is the camera.
+
+    `fails` are fields of `camera_numbers.ERRORS`.
+    """
     p, s = camera_told(camera, base_hz), np.zeros(1, kept_layout(0))
     for name, value in told.items():
         p[name] = value
@@ -66,7 +72,10 @@ def watch(ticks, camera=STEADY, offset=(0.0, 0.0, 0.5), quat=FACING, frozen=None
     where = np.tile(np.concatenate([here, view]), (ticks, 1))
     stuck = np.zeros(ticks, dtype=bool) if frozen is None else np.array([frozen(k) for k in range(ticks)])
     arrival, samples = np.zeros(ticks, dtype=np.int64), np.zeros(ticks, SAMPLE)
-    found = run(where, mark, noise, stuck, p, s, arrival, samples)
+    errors = well()
+    for name, value in (fails or {}).items():
+        errors[name] = value
+    found = run(where, mark, noise, stuck, errors, p, s, arrival, samples)
     return Seen(arrival[:found], samples[:found])
 
 
@@ -267,3 +276,51 @@ def test_outliers_are_as_many_and_as_far_as_stated():
     assert np.sqrt(np.mean(off[off > 0.0] ** 2) / 3.0) == pytest.approx(0.2, rel=0.1)
     # They claim to be as good as any.
     np.testing.assert_array_equal(strayed.sigma, plain.sigma)
+
+
+def differing(one, other):
+    """Fields in which two runs that found equally often differ."""
+    np.testing.assert_array_equal(one.arrival, other.arrival)
+    return {n for n in ("capture", "position", "quat", "sigma") if (getattr(one, n) != getattr(other, n)).any()}
+
+
+def test_fault_in_the_noise_is_not_claimed():
+    true = np.array([0.02, -0.01, 0.5])
+    well, noisy = (watch(6000, offset=true, fails={"noise": n}) for n in (1.0, 3.0))
+    assert differing(well, noisy) == {"position", "quat"}
+    np.testing.assert_allclose(noisy.position - true, 3.0 * (well.position - true), atol=1e-12)
+
+
+def test_outliers_scatter_as_stated_on_each_axis_and_turn_nothing():
+    well, off = watch(60_000), watch(60_000, fails={"outlier": 0.011})
+    assert differing(well, off) == {"position"}
+    error = off.position - well.position
+    # 1800 samples: the standard deviation is known to 1.7 %.
+    np.testing.assert_allclose(error.std(axis=0), 0.011, rtol=0.06)
+    np.testing.assert_allclose(np.corrcoef(error[1:].T, error[:-1].T) - np.eye(6), 0.0, atol=0.1)
+
+
+def test_flipped_attitude_is_the_second_pose_and_nothing_else_changes():
+    offset = np.array([0.1, 0.05, 0.5])
+    well, flipped = (watch(3000, offset=offset, honesty=0.0, fails={"flipped": f}) for f in (0, 1))
+    assert differing(well, flipped) == {"quat"}
+    np.testing.assert_allclose(flipped.quat, np.tile(second_pose(offset, FACING), (len(flipped.quat), 1)), atol=1e-12)
+    # At twelve degrees beside the axis it is off by twice that.
+    turn = Rotation.from_quat(flipped.quat[0], scalar_first=True) * Rotation.from_quat(FACING, scalar_first=True).inv()
+    assert turn.magnitude() == pytest.approx(2.0 * np.arctan(np.hypot(0.1, 0.05) / 0.5), abs=1e-9)
+
+
+def test_wrong_marker_lies_beside_in_the_worlds_axes():
+    """The camera is turned by a quarter about its view: 20 mm along the world's x are its -y."""
+    view = np.array([np.cos(np.pi / 4), 0.0, 0.0, np.sin(np.pi / 4)])
+    well, wrong = (
+        watch(3000, eye=(ORIGIN, view), honesty=0.0, fails={"marker": d}) for d in (np.zeros(3), [0.02, 0, 0])
+    )
+    assert differing(well, wrong) == {"position"}
+    np.testing.assert_allclose(
+        wrong.position - well.position, np.tile([0.0, -0.02, 0.0], (len(wrong.position), 1)), atol=1e-12
+    )
+
+
+def test_wrong_marker_out_of_sight_is_not_found():
+    assert len(watch(3000, fails={"marker": [1.0, 0.0, 0.0]}).arrival) == 0

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from armland.plant.devices.camera_numbers import camera_told
-from armland.plant.devices.detector_errors import DETECTOR, claim, loss
+from armland.plant.devices.detector_errors import DETECTOR, claim, loss, second_pose
+from armland.rotations import from_rotation_vector, matrix, multiply
 from armland.scenario.sensing import Camera
 
 
@@ -46,3 +47,24 @@ def test_smaller_cells_of_the_marker_are_smeared_sooner():
     b = np.array(DETECTOR.smeared)
     assert loss(8.0, 5.0, b) > loss(8.0, 10.0, b) > loss(8.0, 20.0, b)
     assert loss(9.0, 10.0, b) > loss(8.0, 10.0, b)
+
+
+@pytest.mark.parametrize("offset", [(0.0, 0.0, 0.4), (0.1, -0.05, 0.4), (-0.2, 0.1, 1.0)])
+def test_second_pose_makes_the_same_picture_from_afar_and_mirrors_the_normal(offset):
+    """Oracle: the corners projected along the line of sight, as a camera far away sees them."""
+    offset = np.array(offset)
+    quat = multiply(from_rotation_vector(np.array([0.2, -0.1, 0.4])), np.array([0.0, 1.0, 0.0, 0.0]))
+    first, second = matrix(quat), matrix(second_pose(offset, quat))
+    sight = offset / np.linalg.norm(offset)
+    seen = np.eye(3) - np.outer(sight, sight)
+    corners = 0.03 * np.array([[1, 1, 0], [1, -1, 0], [-1, -1, 0], [-1, 1, 0]]).T
+    np.testing.assert_allclose(seen @ second @ corners, seen @ first @ corners, atol=1e-15)
+    np.testing.assert_allclose(second[:, 2], 2.0 * sight * (sight @ first[:, 2]) - first[:, 2], atol=1e-14)
+    np.testing.assert_allclose(second @ second.T, np.eye(3), atol=1e-14)
+    assert np.linalg.det(second) == pytest.approx(1.0)
+    # Turned the other way about the line of sight, the picture is another one.
+    assert (
+        np.abs(seen @ (2.0 * np.outer(sight, sight) - np.eye(3)) @ first @ corners - seen @ first @ corners).max()
+        > 0.03
+    )
+    np.testing.assert_allclose(matrix(second_pose(offset, second_pose(offset, quat))), first, atol=1e-14)

@@ -45,3 +45,11 @@ def test_truth_keeps_what_the_encoder_gets_wrong(bench):
     b.told["encoders"]["offset"] = 0.1
     read(b)
     np.testing.assert_array_equal(b.t["q"][0], Q)
+
+
+def test_encoder_before_a_soft_gear_reads_its_wind_up(bench):
+    """q + τ/K: 50 N·m on 20 kN·m/rad are 2.5 mrad, in the joint that bears them."""
+    b = bench()
+    b.told["encoders"]["compliance"] = 5e-5
+    b.put("at_tau", [50.0, 0.0, 0.0, -20.0, 0.0, 0.0, 0.0], "encoders")
+    np.testing.assert_allclose(read(b)["q"][0] - Q, [2.5e-3, 0.0, 0.0, -1e-3, 0.0, 0.0, 0.0], atol=1e-15)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from armland.errors import ConfigurationError
+from armland.plant.devices.link import _lost
 
 
 @pytest.mark.parametrize("delay", [0, 1, 12, 1023])
@@ -86,3 +87,35 @@ def test_samples_and_messages_say_their_ticks(bench):
 def test_delay_beyond_the_delay_line_is_refused(bench):
     with pytest.raises(ConfigurationError, match=r"link\.uplink_delay_ms = 2000 ms is too long.* 1023 ms"):
         bench(link={"uplink_delay_ms": 2000.0})
+
+
+@pytest.mark.parametrize(("loss", "burst"), [(0.05, 0.0), (0.05, 0.5), (0.3, 0.8)])
+def test_losses_come_as_often_and_as_correlated_as_stated(loss, burst):
+    """A chain of two states: mean p, correlation ρ from one to the next; its mean errs by √(p q (1 + ρ)/(1 − ρ)/N)."""
+    normal = np.random.default_rng(3).standard_normal(40_000)
+    lost, before = np.empty(normal.size), 0
+    for k, x in enumerate(normal):
+        before = _lost(loss, burst, before, x)
+        lost[k] = before
+    error = np.sqrt(loss * (1.0 - loss) * (1.0 + burst) / (1.0 - burst) / normal.size)
+    assert lost.mean() == pytest.approx(loss, abs=4.0 * error)
+    assert np.corrcoef(lost[1:], lost[:-1])[0, 1] == pytest.approx(burst, abs=4.0 / np.sqrt(normal.size * loss))
+
+
+def test_stamp_of_a_uav_whose_clock_is_late_is_late(bench):
+    b = bench(link={"downlink_delay_ms": 10.0})
+    b.told["link"]["stamp"] = 4
+    assert [b.read(k)["uav_tick"].item() for k in range(50)][-1] == 49 - 10 + 4
+
+
+def test_sample_says_what_was_asked_of_the_rotors_and_which_command_was_heard(bench):
+    """The echo is the tick at which the newest command on board was sent: what the ground learns the delay of."""
+    b = bench(link={"uplink_delay_ms": 7.0, "downlink_delay_ms": 3.0})
+    for k in range(40):
+        m = b.read(k)
+        b.act(k)
+    # The sample of tick 36 was taken before that tick's command arrived.
+    assert m["uav_tick"] == 36
+    assert m["uav_echo"] == 35 - 7
+    np.testing.assert_allclose(m["uav_rotors"][0].sum(), b.sim.scenario.control.thrust_n)
+    assert m["uav_weak"] == 0

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from armland.plant.devices import faults
 from armland.plant.devices.magnet import OFF, ON, TEST, TOUCHING_M, energise, kept_layout, pull, tell, told_layout
+from armland.plant.faults import table as faults
 from armland.plant.scene.gear import CUSHION_BELOW_M, couple, mount_face
 from armland.plant.scene.uav import PLATE
 from armland.scenario import load_scenario
@@ -236,3 +236,25 @@ def test_fault_of_coil_and_of_rating_act_on_the_pull():
         bench = Bench()
         bench.faults[name] = value
         assert bench.step(300, -10.0 * UP).kept["pull"][0] == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.3])
+def test_stuck_magnet_holds_a_share_of_its_rating_when_it_is_off(share):
+    held, pulled_off, well = Bench(), Bench(), Bench()
+    for bench in (held, pulled_off):
+        bench.faults["residual"] = share
+    held.step(500, (0.8 * share * RATED + WEIGHT) * UP, command=OFF)
+    pulled_off.step(500, (1.2 * share * RATED + WEIGHT) * UP, command=OFF)
+    well.step(500, (0.8 * share * RATED + WEIGHT) * UP, command=OFF)
+    assert held.height < 1e-4
+    assert held.kept["pull"][0] == pytest.approx(share * RATED, rel=0.05)
+    assert min(pulled_off.height, well.height) > 0.01
+
+
+def test_stuck_magnet_is_as_strong_as_any_and_reports_the_same_while_it_is_on():
+    well, stuck = Bench(), Bench()
+    stuck.faults["residual"] = 0.3
+    for bench in (well, stuck):
+        bench.step(500, 0.5 * RATED * UP)
+    np.testing.assert_array_equal(stuck.data.qpos, well.data.qpos)
+    assert (stuck.kept["report"], stuck.kept["fault"]) == (well.kept["report"], well.kept["fault"])

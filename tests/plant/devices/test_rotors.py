@@ -49,7 +49,7 @@ def test_disturbance_is_a_force_of_the_world_and_a_torque_of_the_body(bench):
 def moving(b, velocity, turn=(0.0, 0.0, 0.0), rate=(0.0, 0.0, 0.0), air=(0.0, 0.0, 0.0)):
     """Wrench (6,) on the UAV, world, between two samples on board, so that all ask the same of their rotors."""
     b.t["v_cm"], b.t["omega"], b.t["quat"] = velocity, rate, from_rotation_vector(np.array(turn))
-    b.told["rotors"]["air"] = air
+    b.told["air"]["moves"], b.told["air"]["mean"] = 1, air
     return b.act(1)
 
 
@@ -93,3 +93,13 @@ def test_a_roll_is_damped_by_its_own_rotors(flying):
 def test_switched_off_nothing_is_felt(flying):
     still, moves = (moving(flying(inflow=False, drag=0.0), v) for v in ((0, 0, 0), (1.0, 0.0, 0.5)))
     np.testing.assert_array_equal(still, moves)
+
+
+def test_gust_acts_as_the_air_that_moves_and_not_on_one_that_drifts_along(flying):
+    wind = np.array([3.0, -2.0, 0.0])
+    gust, air, calm, along = flying(), flying(), flying(), flying()
+    gust.kept["faults"]["wind"] = along.kept["faults"]["wind"] = wind
+    felt, same, still = moving(gust, (0, 0, 0)), moving(air, (0, 0, 0), air=wind), moving(calm, (0, 0, 0))
+    np.testing.assert_array_equal(felt, same)
+    np.testing.assert_allclose(felt[:2] - still[:2], 0.22 * wind[:2], atol=1e-12)
+    np.testing.assert_allclose(moving(along, wind), still, atol=1e-12)

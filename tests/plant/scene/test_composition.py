@@ -6,8 +6,8 @@ import pytest
 from numba import njit
 
 from armland.models.parameters import arm_model
-from armland.plant.devices import faults
 from armland.plant.devices.magnet import OFF, ON, energise, kept_layout, tell, told_layout
+from armland.plant.faults import table as faults
 from armland.plant.scene.composition import build_scene
 from armland.rotations import matrix
 from armland.scenario import load_scenario
@@ -163,7 +163,8 @@ def test_stands_on_the_rails(yard):
     start = yard.sensor("r")
     yard.step(3000)
     np.testing.assert_allclose(yard.sensor("cradle_force"), [0.0, 0.0, weight], atol=1e-3)
-    np.testing.assert_allclose(yard.sensor("r"), put_down, atol=1e-4)
+    # Its four buffers give way by a little more than 0.1 mm.
+    np.testing.assert_allclose(yard.sensor("r"), put_down - [0.0, 0.0, weight / 4e4], atol=1e-5)
     assert np.linalg.norm(yard.sensor("r") - start) < 1e-6
     assert not yard.sensor("ground_force").any()
 
@@ -277,7 +278,22 @@ def test_arm_cannot_pass_through_a_rail(yard):
         yard.lead(put_down + [0.0, 0.003 * k, -0.03])
         yard.step(10)
     assert yard.sensor("arm_cradle_force")[1] > 20.0
-    assert yard.sensor("ee_pos")[1] < 0.5 * 0.196
+    assert yard.sensor("ee_pos")[1] < 0.5 * yard.scenario.cradle.gap_m
+
+
+def test_plate_that_lies_on_a_rail_is_told_from_the_skids(yard):
+    rail = yard.model.geom("rail_1")
+    y, top = float(rail.pos[1]), yard.model.body("cradle").pos + [0.0, 0.0, rail.pos[2] + rail.size[0]]
+    s, d = yard.scene, yard.data
+    yard.place(CARRY, top + [0.0, y, yard.scenario.plate.drop_m - 5e-4])
+    # Turned by 90° its skids stand along the rails, beside them.
+    d.qpos[s.uav_qpos[3:]] = np.sqrt([0.5, 0.0, 0.0, 0.5])
+    mujoco.mj_forward(yard.model, d)
+    assert yard.sensor("plate_cradle_force")[2] > 1.0
+    np.testing.assert_allclose(yard.sensor("plate_cradle_force"), yard.sensor("cradle_force"))
+    yard.place(yard.scene.put_down - [0.0, 0.0, 0.08], yard.scene.put_down - [0.0, 0.0, 1e-4])
+    assert yard.sensor("cradle_force")[2] > 1.0
+    assert not yard.sensor("plate_cradle_force").any()
 
 
 def test_uav_falls_onto_the_arm_and_not_through_it(yard):

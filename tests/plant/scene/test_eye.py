@@ -57,7 +57,7 @@ def test_housing_may_touch_rails_skids_and_frame(scene):
     assert others == {"rail_1", "rail_2", *(f"{UAV}{part}_{i}" for part in ("skid", "frame") for i in (1, 2))}
 
 
-@pytest.mark.parametrize(("camera", "free"), [(EYE.position_m, True), ((0.0, 0.085, -0.10), False)])
+@pytest.mark.parametrize(("camera", "free"), [(EYE.position_m, True), ((0.0, 0.115, -0.10), False)])
 def test_housing_passes_between_the_rails_in_front_of_the_tool_and_not_beside_it(landing, camera, free):
     """From above the cradle to where the arm has withdrawn; beside the tool, the housing would hit a rail."""
     scene = build_scene(landing(camera={"position_m": camera}), "free")

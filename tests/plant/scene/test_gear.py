@@ -12,7 +12,7 @@ from armland.plant.scene.gear import cradle_position
     ("sections", "words"),
     [
         ({"plate": {"radius_m": 0.012}}, r"plate\.radius_m = 0\.012 .* must exceed 0\.015"),
-        ({"skids": {"half_length_m": 0.10}}, r"skids\.half_length_m = 0\.1 .* must exceed 0\.122"),
+        ({"skids": {"half_length_m": 0.10}}, r"skids\.half_length_m = 0\.1 .* must exceed 0\.149"),
         ({"tool": {"length_m": 0.06}}, r"tool\.length_m = 0\.06 .* must exceed 0\.0624"),
     ],
 )

@@ -74,7 +74,7 @@ def test_hinge_range_is_in_degrees_whatever_unit_the_arms_file_uses(paper, six_a
     scenario = paper() if arm == "lwr4" else six_axis
     model = build_scene(scenario, "hinged").model
     for name in ("uav/hinge_x", "uav/hinge_y"):
-        np.testing.assert_allclose(model.joint(name).range, np.deg2rad([-45.0, 45.0]))
+        np.testing.assert_allclose(model.joint(name).range, np.deg2rad([-30.0, 30.0]))
         assert model.jnt_limited[model.joint(name).id]
     assert not model.jnt_limited[model.joint("uav/swivel").id]
 

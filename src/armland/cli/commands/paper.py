@@ -1,4 +1,4 @@
-"""The command `paper`: experiments E1 to E3 with their verdicts, and the comparison of laws."""
+"""The command `paper`: experiments E1 to E3 with their verdicts, their spread, and the comparison of laws."""
 
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -25,6 +25,12 @@ PAPER_EPILOG = f"""**Examples**
 
 `armland paper --compare --law examples/own_law.py:my_law` puts your own law beside the built-in ones, in one table.
 
+`armland paper --scenario paper_bench` flies them with an AR.Drone from published data alone: nothing is fitted, and two figures miss.
+
+`armland paper --spread 64` flies both demonstrators over the ranges of what is not published (about ten minutes).
+
+`armland paper --compare --factorial` crosses the laws with the controllers on board, the arm 20 % wrong either way (two minutes).
+
 {EXPLAINED}
 """
 
@@ -35,6 +41,17 @@ PAPER_EPILOG = f"""**Examples**
     compared=options.option(
         bool, "Compare the paper's laws with others instead (scenario compare).", "--compare", default=False
     ),
+    factorial=options.option(
+        bool, "With --compare: every law with every controller on board instead.", "--factorial", default=False
+    ),
+    samples=options.option(
+        int | None,
+        "Fly this many points of the fitted demonstrator's ranges, and of one from published data, instead.",
+        "--spread",
+        min=2,
+        max=100_000,
+        metavar="N",
+    ),
     law=options.LAW,
     **options.MADE,
     out=options.out("paper"),
@@ -42,12 +59,20 @@ PAPER_EPILOG = f"""**Examples**
 )
 def paper(**given: Any) -> None:
     """Reproduce the paper's experiments E1 to E3 and judge them against the published figures."""
-    law, compared = given["law"], given["compared"]
+    law, compared, crossed, samples = (given[name] for name in ("law", "compared", "factorial", "samples"))
+    if crossed and (law is not None or not compared):
+        raise ConfigurationError("--factorial needs --compare, and crosses the built-in laws alone: leave --law out")
+    if samples is not None and (compared or given["scenario"] != "paper"):
+        raise ConfigurationError(
+            "--spread flies the scenarios paper and paper_bench: leave --compare and --scenario out"
+        )
     if law is not None and not compared:
         raise ConfigurationError(f"--law needs --compare here; `armland run E3 --law {law}` flies one experiment by it")
     chosen = "compare" if compared and given["scenario"] == "paper" else given["scenario"]
     loaded = options.load(chosen, given, hinged=True)
-    (_compare if compared else _paper)(loaded, given, ready())
+    if samples is not None:
+        _spread(loaded, options.load("paper_bench", given, hinged=True), given, ready())
+    (_factorial if crossed else _compare if compared else _paper)(loaded, given, ready())
 
 
 def _paper(scenario: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:
@@ -89,3 +114,33 @@ def _compare(scenario: "Scenario", given: dict[str, Any], console: Console) -> N
         return Work(all(v.holds for v in comparison.verdicts), result, lambda out: print_comparison(result, out))
 
     publish(given, "comparison.json", (), work)
+
+
+def _spread(fitted: "Scenario", bench: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:
+    from armland.experiments.spread import spread
+    from armland.scenario import load_scenario
+    from armland.view.figures.spread import draw_spread
+    from armland.view.tables.spread import print_spread
+
+    def work(_: Results) -> Work:
+        with reported(console) as tell:
+            bias_n = load_scenario("landing").imperfections.force_bias_n
+            found = spread(fitted, bench, given["samples"], bias_n, tell)
+        return Work(
+            True, found.result(), lambda out: print_spread(found, out), lambda folder: draw_spread(folder, found)
+        )
+
+    publish(given, "spread.json", ("spread.p??",), work)
+
+
+def _factorial(scenario: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:
+    from armland.experiments.factorial import cross
+    from armland.view.tables.spread import print_factorial
+
+    def work(_: Results) -> Work:
+        with progress_bar(console) as bar:
+            task = bar.add_task("laws and boards", total=None)
+            found = cross(scenario, lambda arm, done, n: bar.update(task, completed=done, total=n, description=arm))
+        return Work(True, found.result(), lambda out: print_factorial(found, out))
+
+    publish(given, "factorial.json", (), work)

@@ -26,6 +26,9 @@ _EPILOG = """**Examples**
 `armland COMMAND --set 'faults=[{kind="link_loss", phase="PHASE", after_s=0.5}]'` lets a device fail, as `[[faults]]` with the
 same keys does in a scenario's file.
 
+`armland COMMAND --deviation published` flies a plant that differs from the controller's belief as far as sources say a real one may;
+`--set deviation.uav.mass=0.1` gives one deviation a range of its own.
+
 `armland COMMAND --arm my_arm.urdf --ee tool0` puts your own arm in the LWR's place.
 
 `armland COMMAND --law my_file.py:my_law` controls the held UAV by your own law.
@@ -88,7 +91,11 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
     from armland.mission.registry import mission_named
 
     hinged = mission_named(mission).start == "hinged"
-    loaded = options.load(given["scenario"] or ("paper" if hinged else "landing"), given, hinged)
+    name = given["scenario"] or ("paper" if hinged else "landing")
+    loaded = options.load(name, given, hinged)
+    if not hinged and "deviation.level" not in loaded.own:
+        # What all sources give, unless the user says otherwise: a demonstrator differs from what is believed of it. The log says so.
+        loaded = options.load(name, {**given, "deviation": "published"}, hinged)
     console = ready()
     from armland.experiments.episode import prepare
 

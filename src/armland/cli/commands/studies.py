@@ -69,6 +69,7 @@ def verify(**given: Any) -> None:
     ENVELOPE_EPILOG,
     scenario=options.scenario("landing"),
     flights=options.option(int, "Landings to fly and mark on the map.", default=6, min=0, max=10_000),
+    deviation=options.DEVIATION,
     settings=options.SETTINGS,
     out=options.out("envelope"),
     **options.SHOWN,

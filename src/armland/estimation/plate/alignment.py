@@ -17,6 +17,9 @@ from armland.estimation.plate import late_fusion
 from armland.records import Record
 from armland.rotations import Array, conjugate, from_rotation_vector, multiply, sgn
 
+TILT_MAX = 0.1
+"""Roll and pitch that a UAV may get wrong, rad: beyond, the camera is believed less than gravity."""
+
 ALIGNMENT = np.dtype([("quat", "f8", (4,)), ("P", "f8", (3, 3)), ("tick", "i8")])
 
 
@@ -81,9 +84,23 @@ def correct(a: Record, tick: int, theta: Array, R: Array, walk: float, gate: flo
     P, missing = covariance(a, (tick - a.tick) * tick_s, walk), np.zeros(3)
     distance = late_fusion.correct(missing, P, theta, R, gate)
     if distance <= gate:
-        _set(a, multiply(from_rotation_vector(missing), a.quat), P)
+        _set(a, _upright(multiply(from_rotation_vector(missing), a.quat)), P)
         a.tick = max(a.tick, tick)
     return distance
+
+
+@njit(cache=True)
+def _upright(quat: Array) -> Array:
+    # δ (4,) with no more tilt than `TILT_MAX`: a camera that takes the second solution of a marker's pose does not turn the world over.
+    half = np.sqrt(quat[1] ** 2 + quat[2] ** 2)
+    if half <= 0.5 * TILT_MAX:
+        return quat
+    out, size = quat.copy(), 0.0
+    for i in (1, 2):
+        out[i] *= 0.5 * TILT_MAX / half
+    for i in range(4):
+        size += out[i] ** 2
+    return out / np.sqrt(size)
 
 
 @njit(cache=True)

@@ -55,6 +55,9 @@ def kept_layout() -> np.dtype:
             ("camera_position", "f8", (RING, 3)),  # m, D
             ("camera_quat", "f8", (RING, 4)),  # D<-camera
             ("first_tick", "i8"),
+            ("fused", "i8"),  # samples that were fused since it began
+            ("leapt", "i8"),  # tick at which the marker was last found far from where it had just been
+            ("noise", "f8"),  # real variance of the camera over the claimed one, by what is seen; 0: not yet begun
             ("imu_tick", "i8"),
             ("rate", "f8", (3,)),  # rad/s, body
             ("align", ALIGNMENT),
@@ -107,6 +110,8 @@ def told(scenario: Scenario, mass: float, lever: Array) -> Records:
     for name in ("white", "blind", "walk", "align_walk", "gate", "restart_after"):
         p[name] = getattr(f, name)
     p["tilt_prior"], p["speed_prior"], p["bias_prior"] = f.tilt_prior_rad, f.speed_prior_mps, f.bias_prior_mps2
-    p["hold"], p["age_max"] = round(f.hold_s / tick_s), round(f.age_max_s / tick_s)
+    # An attitude that comes late for good is not a stale one.
+    late = round(1e-3 * scenario.link.downlink_delay_ms / tick_s)
+    p["hold"], p["age_max"] = round(f.hold_s / tick_s) + late, round(f.age_max_s / tick_s) + late
     p["sigma_position_max"], p["sigma_velocity_max"] = f.sigma_position_max_m, f.sigma_velocity_max_mps
     return p

@@ -22,6 +22,16 @@ from armland.estimation.plate.reckoning import present
 from armland.records import Record
 from armland.rotations import Array, conjugate, cross, from_rotation_vector, matrix, multiply, skew
 
+LEAP_M, LEAP_S = 0.06, 0.3
+"""A marker that is found so far from where it is expected, so soon after it was seen, is another one, or nothing that flies: in that
+time a UAV at its largest tilt comes 0.13 m, and the filter knows most of it."""
+
+SETTLED = 15
+"""Samples after which the filter knows velocity and attitude well enough to call anything a leap."""
+
+NOISE_GAIN, FAR_RATIO, NOISE_MAX = 0.05, 4.0, 36.0
+"""Share by which one sample changes the learnt noise; distance over its mean at which more says no more; largest variance ratio."""
+
 FUSED, STARTED, RESTARTED, REPEATED, UNUSABLE, GATED = 0, 1, 2, 3, 4, 5
 """What `fuse` did: fused; first sample; began anew after too many gated ones; image frozen; stamp or number that cannot be
 used; too far from what was expected."""
@@ -42,6 +52,7 @@ def fuse(m: Record, p: Record, s: Record) -> int:
     Returns:
         What was done: `FUSED`, `STARTED`, `RESTARTED`, `REPEATED`, `UNUSABLE` or `GATED`.
     """
+    s.noise = max(s.noise, 1.0)
     if not _usable(m, s):
         return UNUSABLE
     if _repeats(m, s):
@@ -59,6 +70,7 @@ def fuse(m: Record, p: Record, s: Record) -> int:
     z, R, R_theta = _resolve(m, p, s)
     s.distance[0] = correct(x, P, z, R, p.gate)
     near = s.distance[0] <= p.gate
+    learn_noise(s.distance[0], s)
     theta = alignment.residual(_attitude_seen(m, p, s), multiply(s.align.quat, s.quat[capture % RING]))
     gate = p.gate if near else -1.0
     s.distance[1] = alignment.correct(s.align, capture, theta, R_theta, p.align_walk, gate, p.tick_s)
@@ -66,12 +78,33 @@ def fuse(m: Record, p: Record, s: Record) -> int:
     if near and upright:
         replay(s.track, insert(s.track, at, capture, x, P, z, R, True), noise, p.tick_s)
         s.gated, s.sample_tick = 0, max(s.sample_tick, capture)
+        s.fused += 1
         return FUSED
     s.gated += 1
     if s.gated < p.restart_after:
         return GATED
+    recent = s.fused >= SETTLED and (capture - s.sample_tick) * p.tick_s < LEAP_S
+    if not near and recent and _apart(z, predicted) > LEAP_M:
+        s.leapt = s.track.tick
     _start(m, not upright, predicted, p, s)
     return RESTARTED
+
+
+@njit(cache=True)
+def _apart(a: Array, b: Array) -> float:
+    return float(np.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2))
+
+
+@njit(cache=True)
+def learn_noise(distance: float, s: Record) -> None:
+    """Learn by how much the camera's noise exceeds what it claims: then its normalised innovations squared exceed their mean of 3.
+
+    Args:
+        distance: squared Mahalanobis distance of a sample, 3 degrees of freedom. One that is far off may be an outlier.
+        s: of `layouts.kept_layout`; `noise` is updated. A camera that errs less than it claims gains nothing.
+    """
+    s.noise *= np.exp(NOISE_GAIN * (min(distance / 3.0, FAR_RATIO) - 1.0))
+    s.noise = min(max(s.noise, 1.0), NOISE_MAX)
 
 
 @njit(cache=True)
@@ -111,7 +144,8 @@ def _resolve(m: Record, p: Record, s: Record) -> tuple[Array, Array, Array]:
     T = alignment.covariance(s.align, 0.0, 0.0)
     for i in range(3):
         z[i] = s.camera_position[row, i] + offset[i] - lever[i]  # (P.2)
-        seen[i, i], turned[i, i] = m.camera_sigma[i] ** 2, m.camera_sigma[3 + i] ** 2 + p.sigma_attitude**2
+        seen[i, i] = s.noise * m.camera_sigma[i] ** 2
+        turned[i, i] = s.noise * m.camera_sigma[3 + i] ** 2 + p.sigma_attitude**2
         T[i, i] += p.sigma_attitude**2
     # An error of δ shows as one of the position, too: without it the first samples would not fit each other.
     return z, _congruent(R_wc, seen) + _congruent(skew(lever), T), _congruent(R_wc, turned)

@@ -17,13 +17,13 @@ QUANTITIES = {
     "offset": ("offset", 0.012),
     "speed": ("speed", 0.40),
     "tilt": ("tilt", np.deg2rad(40.0)),
-    "plate": ("plate", np.deg2rad(44.0)),
+    "plate": ("plate", np.deg2rad(29.0)),
     "fastest": ("closing", 1.2),
     "slowest": ("closing", 0.0),
 }
 """By axis: the field of `Start` that it moves, and how far a search goes, in that field's unit.
 
-The last two begin at the flight's own closing speed.
+A plate leans at most to the stop of its hinge. The last two begin at the flight's own closing speed.
 """
 
 

@@ -9,15 +9,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from armland.errors import LogError
+from armland.experiments.judge.singularity import Screws, screws_of
 from armland.mission.plan import Plan
 from armland.mission.reference.path import Leg
 from armland.mission.supervisor.table import FAULTS
 from armland.mission.table.mission import Criterion
+from armland.plant.scene.composition import Scene
 from armland.rotations import Array
 from armland.scenario import Scenario
 
 Ticks = NDArray[np.void] | Mapping[str, NDArray[np.void]]
 """Recorded ticks (k,) of `records.tick_layout`, or the messages of a log by name."""
+
+
+class Hold(NamedTuple):
+    """What a magnet can hold, of which a flight may use a share."""
+
+    rating_n: float
+    shear_share: float  # Shear held per newton that presses the faces together
+    share: float
 
 
 class Brief(NamedTuple):
@@ -28,8 +38,12 @@ class Brief(NamedTuple):
     rate_hz: int
     phases: tuple[str, ...]
     finals: frozenset[str]  # Names of the phases that end the mission
+    on_cradle: frozenset[str]  # Names of those in which the UAV may touch the cradle
     faults: tuple[str, ...]  # Names of the faults that the controller can find, `none` first
-    limits: dict[str, Any]  # By the names in `judgement.limits_violated`; a limit that is not here is not judged
+    limits: dict[str, Any]  # By the names in `limits.excesses`; a limit that is not here is not judged
+    hold: Hold | None  # None where the scene has no magnet
+    screws: Screws  # Of the arm
+    gravity: float  # m/s²
     put_down: Array  # (3,) m, D: where the pivot is when the UAV stands in the middle of the cradle
     given: Array  # (3,) m/s, D: velocity that the UAV keeps after the release
     legs: tuple[Leg, ...]  # Of the path that the mission follows; none where it follows none
@@ -52,8 +66,12 @@ def brief_of(metadata: Mapping[str, str]) -> Brief:
             rate_hz=round(1e9 / int(metadata["period_ns"])),
             phases=tuple(metadata["phases"].split(",")),
             finals=frozenset(metadata["finals"].split(",")),
+            on_cradle=frozenset(metadata["on_cradle"].split(",")),
             faults=tuple(metadata["faults"].split(",")),
             limits={name: np.array(value) for name, value in json.loads(metadata["limits"]).items()},
+            hold=Hold(**hold) if (hold := json.loads(metadata["hold"])) else None,
+            screws=Screws(**json.loads(metadata["screws"])),
+            gravity=float(metadata["gravity"]),
             put_down=np.array(json.loads(metadata["put_down"])),
             given=np.array(json.loads(metadata["given"])),
             legs=tuple(_leg(leg) for leg in json.loads(metadata["legs"])),
@@ -81,20 +99,24 @@ LIMITS = ("q_min", "q_max", "qd_max", "tau_max", "torque_rate", "sigma_min", "hi
 """Limits of the controller that the judge holds against what happened; infinite ones are none."""
 
 
-def metadata_of(scenario: Scenario, plan: Plan, put_down: Array) -> dict[str, str]:
+def metadata_of(scenario: Scenario, plan: Plan, scene: Scene) -> dict[str, str]:
     """The metadata of a flight of `plan`; lists of names by commas, everything else that is no text as JSON.
 
     Args:
         scenario: what is flown.
         plan: of it.
-        put_down: (3,) m, D: pivot of a UAV that stands in the cradle's middle; NaN where there is no cradle.
+        scene: in which it is flown.
     """
-    mission, place = plan.mission, scenario.place
+    mission, place, magnet = plan.mission, scenario.place, scenario.magnet
+    hold = Hold(magnet.rating_n, magnet.shear_share, scenario.limits.hinge_force_share)
     data: dict[str, Any] = {
         "limits": {name: plan.told["limit"][name][0] for name in LIMITS if np.isfinite(plan.told["limit"][name]).all()},
         "legs": [leg._asdict() for leg in plan.legs],
         "thresholds": plan.thresholds,
-        "put_down": np.nan_to_num(put_down),
+        "put_down": np.nan_to_num(scene.put_down),
+        "hold": hold._asdict() if "magnet" in scene.parts else None,
+        "screws": screws_of(scene)._asdict(),
+        "gravity": float(np.linalg.norm(scenario.environment.gravity_mps2)),
         "given": place.takeoff_velocity_mps if place.fly_on else (0.0, 0.0, 0.0),
         "criteria": [list(c) for c in mission.criteria],
         "timeouts": dict(mission.timeouts),
@@ -111,6 +133,7 @@ def metadata_of(scenario: Scenario, plan: Plan, put_down: Array) -> dict[str, st
         "praise": mission.praise,
         "phases": ",".join(plan.names),
         "finals": ",".join(p.name for p in plan.phases if p.final),
+        "on_cradle": ",".join(p.name for p in plan.phases if p.on_cradle),
         "faults": ",".join(FAULTS),
         "scenario": scenario.model_dump_json(),
         "overrides": scenario.overrides,

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from armland.experiments.judge.brief import Brief, Ticks
+from armland.experiments.judge.limits import FALL_M
 from armland.experiments.judge.tracking import Metrics, measure
 from armland.experiments.judge.whereabouts import tilt_deg
 
@@ -35,9 +36,10 @@ def capture(ticks: Ticks, brief: Brief) -> Figures:
 
 
 def touchdown(ticks: Ticks, brief: Brief) -> Figures:
-    """State just before the rails first bore, and how far from the cradle's middle the UAV was placed."""
+    """State just before the rails first bore in a phase of the touchdown, and how far from the cradle's middle the UAV was placed."""
     truth = ticks["truth"]
-    touched = np.flatnonzero(truth["cradle_force"][:, 2] > CRADLE_N)
+    due = np.array([name in brief.on_cradle for name in brief.phases])[ticks["mission"]["phase"]]
+    touched = np.flatnonzero((truth["cradle_force"][:, 2] > CRADLE_N) & due)
     if not len(touched):
         return dict.fromkeys(("speed_mps", "tilt_deg", "offset_m"))
     before = truth[max(touched[0] - 2, 0)]
@@ -100,6 +102,9 @@ def bounds(brief: Brief) -> dict[str, float]:
     out = {NAMES.get(c.name, c.name): c.bound for c in brief.criteria}
     if "hinge_max" in brief.limits:
         out["hinge_force_max_n"] = float(brief.limits["hinge_max"])
+    if brief.hold is not None:
+        out |= {"magnet_pull_max_n": brief.hold.share * brief.hold.rating_n, "magnet_shear_max_ratio": brief.hold.share}
+        out["fall_m"] = FALL_M
     return out | ({"joint_torque_max_ratio": 1.0} if "tau_max" in brief.limits else {})
 
 

@@ -1,7 +1,6 @@
 """The judge of all missions: from recorded ticks and the plan's data, by what happened, never by what the controller believed."""
 
-from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -12,6 +11,8 @@ from numpy.typing import NDArray
 from armland.errors import ConfigurationError
 from armland.experiments.judge.brief import Brief, Ticks
 from armland.experiments.judge.figures import MEASURES, NAMES, Figures
+from armland.experiments.judge.limits import Excess, excesses, held_figures
+from armland.experiments.judge.limits import in_words as exceeded_in_words
 from armland.experiments.judge.whereabouts import in_words, state_of
 from armland.mission.supervisor.remedies import stopped
 from armland.mission.table.mission import Criterion, Mission
@@ -41,37 +42,6 @@ def last_flown(ticks: Ticks, brief: Brief) -> str:
     """The last phase that was no end: an end that a second fault has led on from is no phase of the mission."""
     phases = phase_times(ticks["mission"]["phase"], brief.phases, brief.rate_hz)
     return next((p.name for p in reversed(phases) if p.name not in brief.finals), brief.phases[0])
-
-
-TOUCHED = ("arm_touched_cradle", "arm_touched_floor", "arm_touched_uav")  # What each number of `truth.foul` is about
-
-
-def limits_violated(ticks: Ticks, brief: Brief) -> list[str]:
-    """Names of the limits that were exceeded, of those that `brief.limits` names.
-
-    | limit | unit |
-    |---|---|
-    | `q_min`, `q_max` (n,) | rad |
-    | `qd_max` (n,) | rad/s |
-    | `tau_max` (n,) | N·m |
-    | `torque_rate` | N·m/s |
-    | `sigma_min` | 1 |
-    | `hinge_max` | N |
-    """
-    truth = ticks["truth"]
-    most, least = defaultdict(lambda: np.inf, brief.limits), defaultdict(lambda: -np.inf, brief.limits)
-    tau, q, qd = truth["tau"], ticks["measurement"]["q"], ticks["measurement"]["qd"]
-    exceeded = {
-        "joint_position": (q < least["q_min"]).any() or (q > most["q_max"]).any(),
-        "joint_speed": (np.abs(qd) > most["qd_max"]).any(),
-        "joint_torque": (np.abs(tau) > most["tau_max"] * (1.0 + 1e-9)).any(),
-        # The torque that holds the arm up appears within the first tick, which no limit of the rate can see.
-        "torque_rate": np.abs(np.diff(tau[2:], axis=0)).max(initial=0.0) * brief.rate_hz > most["torque_rate"] * 1.001,
-        "singularity": (ticks["health"]["sigma_min"] < least["sigma_min"]).any(),
-        "hinge_force": np.linalg.norm(truth["hinge_force"], axis=1).max() > most["hinge_max"],
-        **{name: truth["foul"][:, k].any() for k, name in enumerate(TOUCHED)},
-    }
-    return [name for name, is_so in exceeded.items() if is_so]
 
 
 GOAL = "done"  # Name of the phase in which a mission has reached its goal
@@ -112,6 +82,10 @@ class Judgement:
     figures: dict[str, Figures]  # Groups of figures by name, see `figures.MEASURES`
     hinge_force_max_n: float
     joint_torque_max_ratio: float
+    fall_m: float  # Largest height from which the UAV fell on something, see `contacts.falls`
+    magnet_pull_max_n: float | None  # None where there is no magnet, see `grip`
+    magnet_shear_max_n: float | None
+    magnet_shear_max_ratio: float | None  # Over what the face then held
     limits_violated: list[str]
 
     def result(self) -> dict[str, Any]:
@@ -136,7 +110,7 @@ def check_kind(mission: Mission) -> None:
 def judge(ticks: Ticks, brief: Brief) -> Judgement:
     """Judge a flight; of a log that was read back, by its messages and `brief_of` its metadata."""
     figures = {name: MEASURES[name](ticks, brief) for name in KINDS[brief.judged_as].measures}
-    violated, truth = limits_violated(ticks, brief), ticks["truth"]
+    violated, truth = excesses(ticks, brief), ticks["truth"]
     why = list(_complaints(ticks, brief, figures, violated))
     tau_max = brief.limits.get("tau_max", np.inf)
     return Judgement(
@@ -150,12 +124,18 @@ def judge(ticks: Ticks, brief: Brief) -> Judgement:
         figures=figures,
         hinge_force_max_n=float(np.linalg.norm(truth["hinge_force"], axis=1).max()),
         joint_torque_max_ratio=float((np.abs(truth["tau"]) / tau_max).max()),
-        limits_violated=violated,
+        **held_figures(ticks, brief),
+        limits_violated=list(violated),
     )
 
 
-def _complaints(ticks: Ticks, brief: Brief, figures: dict[str, Figures], violated: list[str]) -> Iterator[str]:
+def _complaints(
+    ticks: Ticks, brief: Brief, figures: dict[str, Figures], violated: Mapping[str, Excess]
+) -> Iterator[str]:
     end, kind = end_of(ticks, brief), KINDS[brief.judged_as]
+    before, after = _parted(violated, _begin_of_end(ticks, brief))
+    if before:
+        yield f"limits violated: {exceeded_in_words(before, ticks, brief)}"
     if end != GOAL:
         # A mission that was stopped says where it stopped; how far it came before stands in the figures.
         yield _stopped(ticks, brief, end)
@@ -164,8 +144,20 @@ def _complaints(ticks: Ticks, brief: Brief, figures: dict[str, Figures], violate
             yield f"ended in {end}, but {in_words(ticks, brief)}"
         yield from (words for name, words in kind.measures.items() if words and None in figures[name].values())
         yield from _exceeded(brief, figures)
-    if violated:
-        yield f"limits violated: {', '.join(violated)}"
+    if after:
+        yield f"then limits violated: {exceeded_in_words(after, ticks, brief)}"
+
+
+def _begin_of_end(ticks: Ticks, brief: Brief) -> int:
+    """Tick at which the first end began; the number of ticks where none did."""
+    final = np.array([name in brief.finals for name in brief.phases])[ticks["mission"]["phase"]]
+    return int(np.argmax(final)) if final.any() else len(final)
+
+
+def _parted(violated: Mapping[str, Excess], tick: int) -> tuple[dict[str, Excess], dict[str, Excess]]:
+    """What was violated first before `tick`, and what from then on: a cause stands before what came of it."""
+    before = {name: excess for name, excess in violated.items() if excess.where[:tick].any()}
+    return before, {name: excess for name, excess in violated.items() if name not in before}
 
 
 def _stopped(ticks: Ticks, brief: Brief, end: str) -> str:

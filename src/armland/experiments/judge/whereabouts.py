@@ -7,7 +7,8 @@ from armland.experiments.judge.brief import Brief, Ticks
 from armland.rotations import Array
 
 FLYING_SPEED_MPS = 0.6  # A UAV that flies off by itself is not faster, unless the arm has given it more
-TOPPLED_DEG = 25.0  # Tilt beyond which a UAV on the magnet, or in the air, is out of control
+TOPPLED_DEG = 25.0  # Tilt beyond which a UAV in the air is out of control
+LEANING_DEG = 46.0  # Tilt of one that leans on both of the hinge's stops, 30 degrees each, a little askew
 FALL_MPS = 1.2  # Faster than this downwards is a fall: from 7 cm
 
 STILL_MPS, CARRIED_N, LOW_M = 0.05, 1.0, 0.6
@@ -33,7 +34,7 @@ def state_of(ticks: Ticks, brief: Brief) -> str:
     if speed < STILL_MPS and late["cradle_force"][:, 2].min() > CARRIED_N:
         return "standing"
     # One that has toppled over its hinge is not held, even where the magnet grips; least of all one that lies on the arm.
-    toppled = late["foul"][:, 2].any() or tilt > TOPPLED_DEG
+    toppled = late["foul"][:, 2].any() or tilt > LEANING_DEG
     if speed < STILL_MPS and late["touching"].min() == 4 and not toppled:
         return "held"
     allowed = max(FLYING_SPEED_MPS, 0.25 + float(np.linalg.norm(brief.given)))

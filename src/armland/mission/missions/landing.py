@@ -7,8 +7,18 @@ from armland.mission.supervisor.ends import FINALS
 from armland.mission.table.mission import At, Criterion, Mission
 from armland.mission.table.phases import Phase
 
-READY = "magnet_ready > half, bias_known > half, uav_seen > half"
+READY = "magnet_ready > half, bias_known > half, uav_seen > half, progress > almost_one"
 """What a self-test waits for."""
+
+TESTED: dict[str, Any] = {
+    "kind": "ground",
+    "arm": "nod",
+    "magnet": "test",
+    "free": True,
+    "duration_s": 0.5,
+    "on_timeout": "refused",
+}
+"""The magnet is switched on and off; the arm nods, so that the force-torque sensor weighs the tool."""
 
 ARRIVED = "progress > almost_one, arm_error < arm_error_m"
 
@@ -21,24 +31,24 @@ HELD: dict[str, Any] = {"kind": "held", "magnet": "on", "held": True, "link": "h
 CARRIED: dict[str, Any] = {**HELD, "uav": "ramp", "share": "carry"}
 """So it does, and its rotors carry their share."""
 
-RESTING: dict[str, Any] = {"kind": "cradle", "arm": "yield", "on_timeout": "secured"}
+RESTING: dict[str, Any] = {"kind": "cradle", "arm": "yield", "on_cradle": True, "on_timeout": "secured"}
 """The UAV stands on the cradle, the arm gives way."""
 
 PHASES = (
-    Phase("self_test", kind="ground", arm="hold", uav="autonomous", magnet="test", free=True, on_timeout="refused").to(
-        "guide", READY, 0.2
-    ),
+    Phase("self_test", **TESTED, uav="autonomous").to("guide", READY, 0.2),
     Phase("guide", arm="hold", uav="station", free=True, timeout_s=12.0).to(
         "approach", "uav_error < uav_error_m, uav_speed < uav_speed_mps", 0.2
     ),
-    Phase("approach", arm="join", uav="station", free=True, duration_s=1.5, timeout_s=4.0, on_timeout="miss").to(
-        "align", "progress > almost_one"
-    ),
-    Phase("align", arm="track", uav="station", timeout_s=8.0, on_timeout="miss").to(
+    Phase("approach", arm="join", uav="station", free=True, duration_s=1.5, timeout_s=4.0, on_timeout="miss")
+    .to("align", "progress > almost_one, uav_seen > half")
+    .to("miss", "uav_seen < half", 0.5),
+    Phase("align", arm="track", uav="station", timeout_s=8.0, on_timeout="miss")
+    .to(
         "close",
         "offset < align_offset_m, relative_speed < align_speed_mps, tilt < align_tilt_deg, uav_seen > half",
         0.1,
-    ),
+    )
+    .to("miss", "uav_seen < half", 0.5),
     Phase("close", **TOUCHING, arm="close", uav="station", duration_s=1.0)
     .to("capture", "contact > half")
     .to("miss", "offset > lost_offset_m", 0.02)
@@ -46,33 +56,36 @@ PHASES = (
     # Until the arm carries, a UAV without link flies by itself.
     Phase("capture", **TOUCHING, arm="hold", uav="ramp", share="test", held=True, link="caught")
     .to("miss", "gap > let_go_m", 0.02)
+    # A tilted UAV that the magnet holds goes nowhere, but is reckoned to; a stray image moves no estimate: both must say so.
+    .to("miss", "offset > slipped_m, image_offset > slipped_m", 0.05)
     .to("hand_over", "pull > pull_seen_n, elapsed > settled_s", 0.1),
     Phase("hand_over", **CARRIED, arm="hold", observe=True, timeout_s=6.0).to(
         "carry", "thrust_left < thrust_left_n, arm_share > share_carried", 0.1
     ),
     Phase("carry", **CARRIED, arm="move", observe=True, duration_s=2.5, timeout_s=6.0).to("set_down", ARRIVED, 0.1),
-    Phase("set_down", **CARRIED, load="impact", arm="move", duration_s=2.0, timeout_s=4.0).to(
+    Phase("set_down", **{**CARRIED, "load": "impact"}, arm="lower", on_cradle=True, duration_s=1.5, timeout_s=4.5).to(
         "unload", "ground_share > share_touched, progress > half", 0.02
     ),
     Phase("unload", **RESTING, load="impact", uav="ramp", share="none", link="landed", magnet="on", timeout_s=8.0).to(
         "release", "ground_share > share_resting, hinge_force < force_free_n, rotors < rotors_off_n", 0.2
     ),
-    Phase("release", **RESTING, uav="off", timeout_s=3.0).to(
-        "withdraw", "elapsed > coil_off_s, hinge_force < force_free_n", 0.1
-    ),
-    Phase("withdraw", **{**RESTING, "arm": "back_off"}, uav="off", duration_s=1.2, timeout_s=4.0).to(
+    Phase("release", **RESTING, uav="off", timeout_s=3.0).to("withdraw", "elapsed > coil_off_s"),
+    # The sensor's zero is learnt anew: by now it may have drifted as far as a plate would pull that sticks.
+    Phase("withdraw", **{**RESTING, "arm": "back_off"}, uav="off", free=True, duration_s=1.2, timeout_s=4.0).to(
         "done", "progress > almost_one, retreat > retreat_m, contact < half", 0.1
     ),
-    Phase("miss", arm="back_off", uav="station", duration_s=0.8, timeout_s=3.0)
+    # Down to where it sees the UAV well: close by, a gust takes it out of the camera's view.
+    Phase("miss", arm="move", uav="station", duration_s=1.2, timeout_s=4.0)
     .to("abort", "retries > retries_allowed")
     .to("guide", "progress > almost_one, uav_seen > half", 0.1),
     *FINALS,
 )
 
 TARGETS = {
+    "miss": At("catch_m", -1.0, "wait_below_m"),
     "carry": At("put_down_m", 1.0, "above_m"),
-    # A little further than the rails, so that it arrives there with speed.
-    "set_down": At("put_down_m", -0.004),
+    # Above the highest place of the rails; from there it is lowered until they are felt.
+    "set_down": At("put_down_m", 1.0, "search_m"),
 }
 
 LANDING = Mission(
@@ -86,13 +99,14 @@ LANDING = Mission(
         At("catch_m"),
         At("put_down_m", 1.0, "above_m"),
         At("put_down_m"),
+        At("put_down_m", -1.0, "search_m"),
         At("put_down_m", -1.0, "withdraw_m"),
     ),
     targets=TARGETS,
     timeouts={
         "self_test": "magnet, bias of the force sensor or sight of the UAV were not ready: check magnet and camera",
         "guide": "the UAV did not come to its station: check that it obeys and has room",
-        "miss": "the capture was missed too often: check wind, marker and magnet",
+        "miss": "the capture was missed too often: check wind, marker, magnet and force sensor",
         "hand_over": "the arm did not take the weight over: check that the UAV obeys its thrust command",
         "carry": "the arm did not arrive: look for what is in its way",
         "set_down": "the cradle was not felt: check its place",
@@ -103,7 +117,7 @@ LANDING = Mission(
     criteria=(
         Criterion("touchdown_speed", 0.15, "m/s", "speed of the pivot when the rails are touched first"),
         Criterion("touchdown_tilt", 3.0, "deg", "tilt of the UAV then"),
-        Criterion("placed", 0.010, "m", "distance to the cradle's middle at the end"),
+        Criterion("placed", 0.015, "m", "distance to the cradle's middle at the end"),
         Criterion("rest", 0.01, "m/s", "speed at the end"),
     ),
     judged_as="landing",

@@ -6,7 +6,7 @@ With a speed that the UAV is given it is the same up to the hand-over; then come
 from typing import Any
 
 from armland.mission.missions.keys import GEAR, LAUNCH, ON_MAGNET, SHARED
-from armland.mission.missions.landing import ARRIVED, CARRIED, HELD, READY
+from armland.mission.missions.landing import ARRIVED, CARRIED, HELD, READY, TESTED
 from armland.mission.supervisor.ends import TAKEOFF_FINALS
 from armland.mission.table.mission import At, Criterion, Mission
 from armland.mission.table.phases import Phase
@@ -18,32 +18,38 @@ CURRENT_GONE_S = 0.08
 FLOWN_S = 3.0
 """Time for which a UAV that was given a speed is waited for after the arm has left it."""
 
-GRIPPING: dict[str, Any] = {"kind": "grip", "load": "impact", "magnet": "on", "on_timeout": "secured"}
+STANDING: dict[str, Any] = {"kind": "ground", "uav": "off", "free": True, "on_cradle": True, "on_timeout": "refused"}
+"""The UAV stands on the cradle, nothing touches it yet."""
+
+GRIPPING: dict[str, Any] = {
+    "kind": "grip",
+    "load": "impact",
+    "magnet": "on",
+    "on_cradle": True,
+    "on_timeout": "secured",
+}
 """The magnet works on the plate of a UAV that stands on the cradle."""
 
 CARRY_UP = Phase("carry_up", **CARRIED, arm="move", observe=True, duration_s=2.5, timeout_s=6.0)
 
 # It flies by itself should the link be lost: it must know so before the magnet opens.
 HAND_BACK = Phase("hand_back", **{**HELD, "link": "caught"}, arm="hold", uav="balance", observe=True, timeout_s=8.0)
-LEVEL = "uav_seen > half, tilt < level_tilt_deg"
+LEVEL = "uav_seen > half, lean < level_tilt_deg"
 
 BEFORE = (
-    Phase("self_test", kind="ground", arm="hold", uav="off", magnet="test", free=True, on_timeout="refused").to(
-        "reach", READY, 0.2
+    Phase("self_test", **{**STANDING, **TESTED}).to("reach", READY, 0.2),
+    # To the plate as the camera sees it: the cradle may stand a little aside.
+    Phase("reach", **STANDING, arm="join", duration_s=2.0, timeout_s=5.0).to(
+        "touch", "progress > almost_one, uav_seen > half"
     ),
-    Phase(
-        "reach", kind="ground", arm="move", uav="off", free=True, duration_s=2.0, timeout_s=4.0, on_timeout="refused"
-    ).to("touch", ARRIVED),
-    Phase("touch", **GRIPPING, arm="move", uav="off", duration_s=1.5, timeout_s=3.0).to(
-        "grip", "contact > half, progress > almost_one", 0.05
-    ),
+    Phase("touch", **GRIPPING, arm="close", uav="off", duration_s=1.5, timeout_s=3.0).to("grip", "contact > half"),
     Phase("grip", **GRIPPING, arm="yield", uav="off", timeout_s=2.0).to(
         "spin_up", "elapsed > settled_s, hinge_force < force_free_n", 0.1
     ),
     Phase("spin_up", **GRIPPING, link="landed", arm="yield", uav="ramp", share="carry", timeout_s=5.0).to(
         "lift", "thrust_left < thrust_left_n, uav_seen > half", 0.2
     ),
-    Phase("lift", **CARRIED, arm="move", duration_s=1.5, timeout_s=4.0).to(
+    Phase("lift", **CARRIED, arm="move", on_cradle=True, duration_s=1.5, timeout_s=4.0).to(
         "carry_up", "progress > almost_one, arm_share > share_carried", 0.1
     ),
 )
@@ -56,7 +62,8 @@ PHASES = (
     Phase("release", kind="touch", arm="hold", uav="level", timeout_s=1.0, on_timeout="clear").to(
         "clear", "elapsed > coil_off_s"
     ),
-    Phase("clear", arm="back_off", uav="station", duration_s=0.8, timeout_s=12.0).to(
+    # Down to where it sees the UAV well.
+    Phase("clear", arm="move", uav="station", duration_s=1.2, timeout_s=12.0).to(
         "done", "progress > almost_one, uav_seen > half, uav_error < uav_error_m, uav_speed < uav_speed_mps", 0.5
     ),
     *TAKEOFF_FINALS,
@@ -102,15 +109,13 @@ def _points(scenario: Scenario) -> tuple[At, ...]:
     before = At("put_down_m", -1.0, "withdraw_m"), At("put_down_m"), At("put_down_m", 1.0, "above_m")
     if gives_speed(scenario):
         return (*before, At("launch_m"))
-    return (*before, At("catch_m"), At("catch_m", -1.0, "withdraw_m"))
+    return (*before, At("catch_m"), At("catch_m", -1.0, "wait_below_m"))
 
 
 TARGETS = {
-    "reach": At("put_down_m", -0.02),
-    # A little further than the plate's face, so that all pads touch.
-    "touch": At("put_down_m", 0.001),
     "lift": At("put_down_m", 1.0, "above_m"),
     "carry_up": At("catch_m"),
+    "clear": At("catch_m", -1.0, "wait_below_m"),
 }
 
 TAKEOFF = Mission(

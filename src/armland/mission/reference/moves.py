@@ -19,7 +19,13 @@ from armland.mission.reference.septic import septic
 from armland.mission.table.phases import ARM
 from armland.records import Record
 
-HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, BRAKE, LAUNCH, LEAVE, BALANCE, FOLLOW = range(len(ARM))
+NOD_M = 0.006
+"""How far the arm nods on each axis: enough to weigh a tool of 0.3 kg, a quarter of the room around it."""
+
+LOWER_S = 0.3
+"""Time in which a steady descent begins."""
+
+HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, BRAKE, LAUNCH, LEAVE, BALANCE, FOLLOW, LOWER, NOD = range(len(ARM))
 
 
 @njit(cache=True)
@@ -52,10 +58,14 @@ def move(mode: int, elapsed: float, duration: float, phase: int, e: Record, p: R
         _leave(elapsed, p, s, r)
     else:
         _rest(elapsed, p, s, r)
-        if mode == MOVE:
+        if mode in (MOVE, LOWER):
             _add_move(u, T, phase, p, s, r)
+        elif mode == NOD:
+            _nod(u, T, r)
+        if mode == LOWER:
+            _feel(elapsed - 0.5 * T, p, r)
         elif mode == BACK_OFF:
-            _lower(u, T, p.depth, r)
+            _lower(u, T, room_below(s, p), r)
         elif mode == YIELD:
             _give_way(e, p, s, r)
     return float(min(max(u, 0.0), 1.0))
@@ -121,7 +131,7 @@ def _leave(elapsed: float, p: Record, s: Record, r: Record) -> None:
     along, speed, rise = leave(elapsed, p.launch_s, p.leave_s)
     for i in range(3):
         r.r[i], r.v[i], r.a[i] = s.r0[i] + s.v0[i] * along, s.v0[i] * speed, s.v0[i] * rise
-    _lower(elapsed / p.leave_s, p.leave_s, p.depth, r)
+    _lower(elapsed / p.leave_s, p.leave_s, room_below(s, p), r)
 
 
 @njit(cache=True)
@@ -144,11 +154,42 @@ def _add_move(u: float, duration: float, phase: int, p: Record, s: Record, r: Re
 
 
 @njit(cache=True)
+def room_below(s: Record, p: Record) -> float:
+    """How far, m, the arm may draw back downwards: `depth`, and not below the lowest place that it was asked to reach."""
+    return float(min(p.depth, max(s.r0[2] - p.lowest, 0.0)))
+
+
+@njit(cache=True)
 def _lower(u: float, duration: float, depth: float, r: Record) -> None:
     b, b_dot, b_ddot = septic(u, duration)
     r.r[2] -= b * depth
     r.v[2] -= b_dot * depth
     r.a[2] -= b_ddot * depth
+
+
+@njit(cache=True)
+def _nod(u: float, duration: float, r: Record) -> None:
+    # Along (1, 1, 1) by `NOD_M` on each axis, and back.
+    half = 0.5 * duration
+    out = u < 0.5
+    b, b_dot, b_ddot = septic(2.0 * u if out else 2.0 * u - 1.0, half)
+    for i in range(3):
+        r.r[i] += NOD_M * (b if out else 1.0 - b)
+        r.v[i] += NOD_M * (b_dot if out else -b_dot)
+        r.a[i] += NOD_M * (b_ddot if out else -b_ddot)
+
+
+@njit(cache=True)
+def _feel(elapsed: float, p: Record, r: Record) -> None:
+    # Downwards at `lower` from half of the move on, its speed blended in over `LOWER_S`, to twice the searched depth and no further.
+    if elapsed <= 0.0:
+        return
+    t = min(elapsed, LOWER_S)
+    depth = p.lower * (0.5 * t * t / LOWER_S + max(elapsed - LOWER_S, 0.0))
+    r.r[2] -= min(depth, 2.0 * p.search)
+    if depth < 2.0 * p.search:
+        r.v[2] -= p.lower * t / LOWER_S
+        r.a[2] -= p.lower / LOWER_S if elapsed < LOWER_S else 0.0
 
 
 @njit(cache=True)

@@ -33,15 +33,20 @@ def told_layout() -> np.dtype:
             ("standoff", "f8"),  # m
             ("beyond", "f8"),  # m, how far beyond the plate's face the arm would close
             ("depth", "f8"),  # m, that the arm backs off
+            ("lowest", "f8"),  # m, height of the end effector below which it does not [D]
             ("launch", "f8", (3,)),  # m/s, velocity that a take-off gives to the UAV [D]
             ("launch_s", "f8"),  # s, of the run-up, and of coming to rest
             ("leave_s", "f8"),  # s, in which the arm goes down by the depth
             ("targets", "f8", (PHASES, 3)),  # m, end effector [D], of the phases that move
             ("track", "f8"),  # rad/s, of the filter on the plate's motion
             ("track_max", "f8"),  # m/s², its largest acceleration
+            ("track_speed", "f8"),  # m/s, its largest speed, each axis
+            ("room", "f8", (2, 3)),  # m, lowest and highest place [D] to which the arm follows the plate
             ("coast", "f8"),  # s, in which the reference comes to rest
             ("give_way", "f8"),  # m/s/N, of a yielding arm
             ("give_way_max", "f8"),  # m
+            ("lower", "f8"),  # m/s, of an arm that feels for the cradle
+            ("search", "f8"),  # m, above and below its believed place
             ("balance", balance_told()),
         ]
     )
@@ -73,7 +78,7 @@ def begin_reference(before: int, after: int, b: Record) -> None:
     old, new = b.table.phases[before], b.table.phases[after]
     begin(new.arm, old.arm, new.held != old.held, b.tick.estimate, b.kept.refer)
     if new.arm == JOIN:
-        begin_track(b.tick.estimate, b.kept.refer)
+        begin_track(b.tick.estimate, b.told.refer, b.kept.refer)
     elif new.arm == BALANCE:
         begin_balance(b.tick.estimate, b.told.refer.balance, b.kept.refer.balance)
 

@@ -1,19 +1,32 @@
 """How a mission can end: its goal, and the safe states to which the supervisor's fault table leads."""
 
+from typing import Any
+
 from armland.mission.table.phases import Phase
 
+DOWN: dict[str, Any] = {
+    "kind": "end",
+    "uav": "ramp",
+    "share": "none",
+    "magnet": "on",
+    "link": "landed",
+    "on_cradle": True,
+    "final": True,
+}
+"""The UAV stands on the cradle, its rotors run down."""
+
 FINALS = (
-    Phase("done", kind="end", arm="hold", uav="off", final=True),
+    Phase("done", kind="end", arm="hold", uav="off", on_cradle=True, final=True),
     Phase("refused", kind="end", arm="hold", uav="autonomous", final=True),
     Phase("abort", kind="end", arm="back_off", uav="autonomous", duration_s=1.0, final=True),
     Phase("holding", kind="end", arm="hold", uav="level", magnet="on", link="held", final=True),
-    Phase("balancing", kind="end", arm="balance", uav="off", magnet="on", link="landed", final=True),
+    Phase("balancing", kind="end", arm="balance", uav="off", magnet="on", link="landed", on_cradle=True, final=True),
     Phase("let_fly", kind="end", arm="back_off", uav="autonomous", duration_s=1.0, final=True),
-    Phase("secured", kind="end", arm="yield", uav="ramp", share="none", magnet="on", link="landed", final=True),
+    Phase("secured", **DOWN, arm="yield"),
     Phase("braked_refused", kind="end", arm="brake", uav="autonomous", final=True),
     Phase("braked_free", kind="end", arm="brake", uav="autonomous", final=True),
     Phase("braked_held", kind="end", arm="brake", uav="level", magnet="on", link="held", final=True),
-    Phase("braked_down", kind="end", arm="brake", uav="ramp", share="none", magnet="on", link="landed", final=True),
+    Phase("braked_down", **DOWN, arm="brake"),
 )
 """Ends of a landing: reached the goal, or one of the safe states. Below each, the arm's part, the UAV's and the magnet's.
 
@@ -26,9 +39,9 @@ thrust it has: without it, it would topple over its hinge.
 """
 
 TAKEOFF_FINALS = tuple(
-    p._replace(uav="off")
+    p._replace(uav="off", on_cradle=True)
     if p.name in ("refused", "braked_refused")
-    else p._replace(kind="flight", uav="station")
+    else p._replace(kind="flight", uav="station", on_cradle=False)
     if p.name == "done"
     else p
     for p in FINALS

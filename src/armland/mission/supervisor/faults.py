@@ -3,7 +3,6 @@
 | symbol | name | unit |
 |---|---|---|
 | F, F_z | `estimate.hinge_force`, what load and thrust explain of its vertical part | N, deck |
-| ξ | capture point (B.2), at which a held UAV counts as falling | rad |
 """
 
 from functools import lru_cache
@@ -11,15 +10,20 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from armland.control.laws.balance import capture_angle
+from armland.mission.reference.moves import BACK_OFF, MOVE
 from armland.mission.supervisor.table import FAULT, FAULTS
 from armland.mission.table.arrays import FAULT_ROWS
+from armland.mission.table.phases import UAV
 from armland.records import Record
 
 COUNT = len(FAULTS)
+AUTONOMOUS, STATION = UAV.index("autonomous"), UAV.index("station")
 NON_FINITE, ARM_STALE, UAV_SILENT = FAULT["non_finite"], FAULT["arm_stale"], FAULT["uav_silent"]
 CAMERA_STALE, WRENCH_STALE, WRENCH_DRIFT = FAULT["camera_stale"], FAULT["wrench_stale"], FAULT["wrench_drift"]
 MAGNET_COIL, OVERLOAD, ROTOR_LOST = FAULT["magnet_coil"], FAULT["overload"], FAULT["rotor_lost"]
+ENCODER_FROZEN, POWER_LOST, CAMERA_LEAP = FAULT["encoder_frozen"], FAULT["power_lost"], FAULT["camera_leap"]
+CAMERA_NOISE, WRENCH_WRONG, MAGNET_STUCK = FAULT["camera_noise"], FAULT["wrench_wrong"], FAULT["magnet_stuck"]
+ARM_BLOCKED, THRUST_LOST = FAULT["arm_blocked"], FAULT["thrust_lost"]
 UAV_TILT, SLIP, NEAR_LIMIT, LAW_FAILED = FAULT["uav_tilt"], FAULT["slip"], FAULT["near_limit"], FAULT["law_failed"]
 
 SEEN_S = 0.15
@@ -28,12 +32,29 @@ SEEN_S = 0.15
 LOAD_LEFT = 0.3
 """A load of which less than this share is felt is gone."""
 
-JOLT_MPS, JOLTED_S = 0.1, 0.4
-"""Speed of the end effector against its reference that no healthy flight makes once the UAV is held; time for which a UAV leans
-that was struck so by way of the arm, and rights itself."""
+WEIGHT_FELT = 0.85
+"""Share of the weight at the hinge from which on the rotors carry nothing, where they should carry some."""
 
-CAUGHT_S = 0.15
-"""Time constant with which a UAV rights itself that was caught while it leant, as in flight it may."""
+STRAINS, SINKS_MPS, FALLS_MPS = 1.12, 0.15, 0.6
+"""Thrust over what should carry the weight, and speed of sinking, of a UAV whose rotors give too little; of one that is silent."""
+
+LEAPT_S = 0.2
+"""How long a leap of the marker counts."""
+
+NOISY = 25.0
+"""Variance of the camera over what it claims, beyond which it is not to be trusted: five times the standard deviation."""
+
+WEIGHED_S, WEIGHED = 0.45, (0.6, 1.5)
+"""Time of the nod after which the tool has been weighed; force found over force expected of a sensor that can be used."""
+
+STUCK_M, STUCK_N, STUCK_S = 0.002, 18.0, 0.2
+"""Way that the reference has drawn back, and force, from which on a plate sticks; time after which the current is gone."""
+
+FOLLOWED_M, TOUCHES_M = 0.06, 0.01
+"""Way that the arm has drawn back, and distance of the plate, from which on a plate that is light enough to follow sticks."""
+
+BLOCKED_M = 0.03
+"""Distance of an arm in free motion from its reference which no healthy flight makes."""
 
 
 @lru_cache
@@ -50,11 +71,8 @@ def watch_layout() -> np.dtype:
             ("load_gone", "f8"),  # N, least load that can be missed
             ("hinge_max", "f8"),  # N
             ("tilt_max", "f8"),  # rad
-            ("fall_rate", "f8"),  # rad/s
-            ("capture_max", "f8"),  # rad, capture point at which a held UAV counts as falling
-            ("tip", "f8"),  # rad per m/s²: how far the arm's acceleration tilts the UAV on its hinge
-            ("down", "f8"),  # m, height of the pivot when the UAV stands on the cradle
-            ("near", "f8"),  # m, height above it at which the rails may touch
+            ("thrust_max", "f8"),  # N, largest thrust that is commanded
+            ("hover_max", "f8"),  # N, command beyond which a UAV cannot hover safely
             ("joint_margin", "f8"),  # rad
             ("sigma_min", "f8"),
             ("speed_share", "f8"),
@@ -68,31 +86,10 @@ def seen_layout() -> np.dtype:
     return np.dtype(
         [
             ("counts", "i8", (FAULT_ROWS,)),  # ticks for which each fault's sign has been seen
-            ("caught", "i8"),  # tick at which the UAV was held first
-            ("jolted", "i8"),  # tick at which the end effector last missed its reference by a jolt
-            ("tip", "f8"),  # rad, that the arm's acceleration explains
+            ("off", "i8"),  # tick at which the magnet was switched off last
+            ("carried", "i8"),  # 1 where the UAV hung on the arm until then
         ]
     )
-
-
-@njit(cache=True)
-def note_jolts(now: int, e: Record, refer: Record, p: Record, s: Record) -> None:
-    """Remember what makes a UAV lean that has lost no rotor: that the end effector was struck, and how hard it accelerates.
-
-    Args:
-        now: present tick.
-        e: estimate.
-        refer: what the reference keeps: v, m/s, and a, m/s², of the tick before.
-        p: `watch_layout`.
-        s: `seen_layout`, written.
-    """
-    missed, asked = 0.0, 0.0
-    for i in range(3):
-        missed += (refer.v[i] - e.v[i]) ** 2
-        asked += refer.a[i] ** 2
-    s.tip = p.tip * np.sqrt(asked)
-    if missed > JOLT_MPS**2:
-        s.jolted = now
 
 
 @njit(cache=True)
@@ -109,7 +106,7 @@ def find_fault(expected: float, magnet_on: bool, phase: int, b: Record) -> int:
     signs = np.zeros(FAULT_ROWS, np.bool_)
     _device_signs(magnet_on, m, e, b.told.decide.watch, b.kept.estimate, signs)
     _load_signs(expected, b.table.phases[phase].force, m, e, b.told.decide.watch, b.kept.estimate, signs)
-    _attitude_signs(m, e, b.told.decide.watch, b.kept.estimate, b.kept.decide, signs)
+    _motion_signs(b.table.phases[phase], b, signs)
     p, health = b.told.decide.watch, b.kept.limit
     sigma = b.kept.estimate.sigma
     signs[NEAR_LIMIT] = (
@@ -130,6 +127,16 @@ def _device_signs(magnet_on: bool, m: Record, e: Record, p: Record, known: Recor
     # Both directions: what it says arrives, and it has heard what was said to it.
     signs[UAV_SILENT] = m.tick - min(m.uav_tick, m.uav_heard) > p.uav_age
     signs[CAMERA_STALE] = known.seen == 1 and e.plate_age > p.camera_age
+    # One that falls is not where it was expected either, and is silent then.
+    leapt = known.filter.leapt > 0 and (m.tick - known.filter.leapt) * p.tick_s < LEAPT_S
+    signs[CAMERA_LEAP] = leapt and not signs[UAV_SILENT]
+    signs[CAMERA_NOISE] = known.filter.noise > NOISY
+    nod = known.nod
+    for i in range(3):
+        weighed = nod.count * p.tick_s > WEIGHED_S and not WEIGHED[0] < nod.gain[i] < WEIGHED[1]
+        signs[WRENCH_WRONG] = signs[WRENCH_WRONG] or weighed
+    for i in range(known.same.shape[0]):
+        signs[ENCODER_FROZEN] = signs[ENCODER_FROZEN] or known.same[i] > 1
     signs[WRENCH_STALE] = m.tick - m.wrench_tick > p.wrench_age
     signs[MAGNET_COIL] = magnet_on and m.magnet_fault == 1
 
@@ -138,30 +145,49 @@ def _device_signs(magnet_on: bool, m: Record, e: Record, p: Record, known: Recor
 def _load_signs(
     expected: float, force_max: float, m: Record, e: Record, p: Record, known: Record, signs: np.ndarray
 ) -> None:
-    force = np.sqrt(e.hinge_force[0] ** 2 + e.hinge_force[1] ** 2 + e.hinge_force[2] ** 2)
+    force = _force(e)
     signs[WRENCH_DRIFT] = abs(e.hinge_force[2] - expected) > p.unexplained
     signs[OVERLOAD] = force > min(force_max, p.hinge_max)
     if signs[UAV_SILENT]:
         # It could not be given its thrust back: it is better off lying on the magnet.
         signs[SLIP] = False
     elif (m.tick - known.grip_tick) * p.tick_s < SEEN_S:
-        # One image errs by as much now and then, and stands for longer where the next one is lost.
-        signs[SLIP] = known.grip_far >= 2
+        # A single image errs by as much now and then, and stands for longer where the next one is lost.
+        signs[SLIP] = known.grip_far >= 3
     else:
         # Nobody sees it: what the arm should carry is not there.
         signs[SLIP] = expected > p.load_gone and force < LOAD_LEFT * expected
 
 
 @njit(cache=True)
-def _attitude_signs(m: Record, e: Record, p: Record, known: Record, kept: Record, signs: np.ndarray) -> None:
-    s = kept.seen
+def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
+    m, e, p, known, kept = b.tick.measurement, b.tick.estimate, b.told.decide.watch, b.kept.estimate, b.kept
+    held, seen, apart, drawn, gap = kept.decide.held == 1, kept.decide.seen, 0.0, 0.0, 0.0
+    for i in range(3):
+        gap += (e.plate[i] - e.r[i]) ** 2
+        apart += (kept.refer.r[i] - e.r[i]) ** 2
+        drawn += (kept.refer.r[i] - kept.decide.grip[i]) ** 2
     up = 1.0 - 2.0 * (e.quat[1] ** 2 + e.quat[2] ** 2)
-    # Touching the rails tilts it too, and when it is caught it still leans from its flight.
-    since = (m.tick - s.caught) * p.tick_s
-    most = p.capture_max * (2.0 if e.r[2] < p.down + p.near else 1.0)
-    most += s.tip + max(p.tilt_max - most, 0.0) * np.exp(-since / CAUGHT_S)
-    struck = m.tick - s.jolted < JOLTED_S / p.tick_s
-    # A plate that slides off tilts the UAV as well: with its rotors stopped it would fall.
-    on = known.grip_far == 0 and not signs[SLIP]
-    signs[ROTOR_LOST] = kept.held == 1 and on and not struck and capture_angle(e.quat, e.omega, p.fall_rate) > most
     signs[UAV_TILT] = up < np.cos(p.tilt_max)
+    # It knows its motors' speeds. A lean alone does not say so: a gust, a blow and the rails make a healthy UAV lean.
+    signs[ROTOR_LOST] = held and m.uav_weak == 1 and not signs[UAV_SILENT] and known.grip_far == 0 and not signs[SLIP]
+    felt = e.hinge_force[2] > WEIGHT_FELT * known.weight and kept.act.thrust > 0.25 * known.weight
+    falls = not held and known.seen == 1 and e.plate_age < LEAPT_S and e.plate_v[2] < -FALLS_MPS
+    signs[POWER_LOST] = signs[UAV_SILENT] and (falls or (held and felt))
+    strains = kept.act.thrust >= min(0.99 * p.thrust_max, STRAINS * kept.act.hover)
+    sinks = row.uav == STATION and strains and e.plate_v[2] < -SINKS_MPS
+    signs[THRUST_LOST] = sinks or (row.uav == AUTONOMOUS and kept.act.trimmed > 0 and kept.act.hover > p.hover_max)
+    signs[ARM_BLOCKED] = apart > BLOCKED_M**2
+    if kept.act.magnet != 0:
+        seen.off, seen.carried = m.tick, row.observe
+    gone = (m.tick - seen.off) * p.tick_s > STUCK_S and seen.off > 0
+    leaves = row.arm == BACK_OFF or row.arm == MOVE
+    pulls = drawn > STUCK_M**2 and _force(e) > STUCK_N
+    # One that was not carried yet and lies on the arm may be too weak to rise.
+    follows = seen.carried == 1 and kept.decide.retreat > FOLLOWED_M and e.plate_age < SEEN_S and gap < TOUCHES_M**2
+    signs[MAGNET_STUCK] = gone and leaves and (pulls or follows)
+
+
+@njit(cache=True)
+def _force(e: Record) -> float:
+    return float(np.sqrt(e.hinge_force[0] ** 2 + e.hinge_force[1] ** 2 + e.hinge_force[2] ** 2))

@@ -4,12 +4,47 @@ from collections.abc import Mapping
 
 REMEDIES: dict[str, tuple[str, str]] = {
     "non_finite": ("a device sends numbers that are none", "look at the device whose samples are flagged"),
+    "encoder_frozen": (
+        "a joint's encoder repeats one reading while the others move",
+        "look at that encoder, then release the brakes",
+    ),
+    "power_lost": (
+        "the UAV is silent and its rotors carry nothing: it has lost its power",
+        "take it off the arm by hand and look at its battery",
+    ),
+    "camera_leap": (
+        "the marker was found elsewhere at once, further than a UAV can fly",
+        "look for another marker in view, or for what spoils the images",
+    ),
+    "camera_noise": (
+        "the camera errs by more than five times what it claims",
+        "light the marker, look at focus and exposure, state the camera's real noise",
+    ),
+    "wrench_wrong": (
+        "the force-torque sensor does not feel the tool's inertia as it should: it is dead, reversed or badly scaled",
+        "look at the sensor's wiring, axes and calibration",
+    ),
+    "magnet_stuck": (
+        "the plate does not come off the magnet that was switched off",
+        "look at coil, residual force and faces",
+    ),
+    "arm_blocked": (
+        "the arm in free motion does not follow its reference: something is in its way or a joint fails",
+        "look for what it touches, then release the brakes",
+    ),
+    "thrust_lost": (
+        "the UAV sinks, or would, with all the thrust that its rotors give",
+        "charge its battery, take off its load, look at its rotors",
+    ),
     "arm_stale": ("the joints' samples stay away or leap", "check encoders and the arm's bus, then release the brakes"),
     "uav_silent": (
         "the UAV's link is silent in one direction or both, or its attitude leaps",
         "restore the link, look at the UAV's attitude sensor",
     ),
-    "camera_stale": ("the camera has not seen the marker for too long", "clean or light the marker, check the camera"),
+    "camera_stale": (
+        "the camera has not seen the marker for too long",
+        "look whether the UAV has left the camera's view; else clean or light the marker, check the camera",
+    ),
     "wrench_stale": ("the force-torque sensor's samples stay away", "check the sensor's bus"),
     "wrench_drift": (
         "the hinge force is not what load and thrust explain",
@@ -18,7 +53,7 @@ REMEDIES: dict[str, tuple[str, str]] = {
     "magnet_coil": ("the magnet's coil does not carry its current", "check coil and supply, repeat the self-test"),
     "overload": ("the hinge force exceeds what the magnet may be loaded with", "look for what pushes or has jammed"),
     "rotor_lost": (
-        "the UAV begins to fall over on its hinge: a rotor is lost",
+        "the UAV says that a rotor gives less than its due",
         "look at its motors before it flies again",
     ),
     "uav_tilt": ("the UAV is tilted beyond control", "stop its rotors and look at it"),

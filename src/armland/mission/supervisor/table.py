@@ -17,14 +17,22 @@ FAULT_TABLE: dict[str, dict[str, str]] = {
     for fault, row in {
         #              ground         flight      touch       held        cradle      grip        hinge
         "non_finite": "refused        abort       abort       holding     secured     secured     -",
+        "encoder_frozen": "braked_refused braked_free braked_free braked_held braked_down braked_down -",
         "arm_stale": " braked_refused braked_free braked_free braked_held braked_down braked_down -",
+        "power_lost": "-              abort       abort       holding     -           -           -",
         "uav_silent": "refused        abort       abort       holding     secured     secured     -",
         "camera_stale": "refused      abort       abort       -           -           secured     -",
+        "camera_leap": "refused       abort       abort       -           -           secured     -",
+        "camera_noise": "refused      abort       abort       -           -           secured     -",
         "wrench_stale": "refused      abort       abort       holding     secured     secured     -",
+        "wrench_wrong": "refused      -           -           -           -           -           -",
         "wrench_drift": "refused      abort       -           holding     secured     secured     -",
         "magnet_coil": "refused       -           abort       holding     -           secured     -",
+        "magnet_stuck": "-            holding     holding     -           secured     secured     -",
+        "arm_blocked": "braked_refused braked_free -          -           -           -           -",
         "overload": "  refused        abort       abort       holding     secured     secured     -",
         "rotor_lost": "-              -           balancing   balancing   -           -           -",
+        "thrust_lost": "refused       abort       abort       -           -           -           -",
         "uav_tilt": "  refused        abort       abort       -           secured     secured     -",
         "slip": "      -              -           -           let_fly     -           -           -",
         "near_limit": "braked_refused braked_free braked_free braked_held braked_down braked_down -",
@@ -43,13 +51,18 @@ FAULTS = ("none", *FAULT_TABLE)
 FAULT = {name: i for i, name in enumerate(FAULTS)}
 
 ESCALATION: dict[str, dict[str, str]] = {
-    "done": {"arm_stale": "braked_down"},
-    "refused": {"arm_stale": "braked_refused"},
-    "abort": {"arm_stale": "braked_free"},
-    "let_fly": {"arm_stale": "braked_free"},
-    "holding": {"arm_stale": "braked_held", "rotor_lost": "balancing", "slip": "let_fly"},
-    "balancing": {"arm_stale": "braked_held"},
-    "secured": {"arm_stale": "braked_down"},
+    "done": {"arm_stale": "braked_down", "encoder_frozen": "braked_down"},
+    "refused": {"arm_stale": "braked_refused", "encoder_frozen": "braked_refused"},
+    "abort": {"arm_stale": "braked_free", "encoder_frozen": "braked_free"},
+    "let_fly": {"arm_stale": "braked_free", "encoder_frozen": "braked_free"},
+    "holding": {
+        "arm_stale": "braked_held",
+        "encoder_frozen": "braked_held",
+        "rotor_lost": "balancing",
+        "slip": "let_fly",
+    },
+    "balancing": {"arm_stale": "braked_held", "encoder_frozen": "braked_held"},
+    "secured": {"arm_stale": "braked_down", "encoder_frozen": "braked_down"},
     "braked_held": {"slip": "braked_free"},
 }
 """Final phase × second fault -> graver final phase; whatever is not here changes nothing."""
@@ -75,6 +88,15 @@ DEBOUNCE_S = {
     "non_finite": 0.02,
     "wrench_drift": 0.3,
     "magnet_coil": 0.02,
+    "encoder_frozen": 0.012,
+    "power_lost": 0.03,
+    # What tells a UAV without power from one without link takes this long.
+    "uav_silent": 0.05,
+    "camera_leap": 0.0,
+    "wrench_wrong": 0.02,
+    "magnet_stuck": 0.002,
+    "arm_blocked": 0.05,
+    "thrust_lost": 0.15,
     "overload": 0.003,
     "rotor_lost": 0.005,
     "uav_tilt": 0.04,
@@ -85,7 +107,7 @@ DEBOUNCE_S = {
 
 
 def debounce_ticks(tick_s: float) -> NDArray[np.int64]:
-    """Ticks (16,) for which each fault's sign must be seen, at ticks of `tick_s` s."""
+    """Ticks (32,) for which each fault's sign must be seen, at ticks of `tick_s` s."""
     out = np.zeros(FAULT_ROWS, np.int64)
     for fault, i in FAULT.items():
         out[i] = max(round(DEBOUNCE_S.get(fault, 0.0) / tick_s), 1) if i else 0
@@ -97,7 +119,7 @@ def fault_rows(
     faults: Mapping[str, Mapping[str, str]] = FAULT_TABLE,
     escalation: Mapping[str, Mapping[str, str]] = ESCALATION,
 ) -> NDArray[np.int64]:
-    """Final phase (16, 32) by index for each fault in each phase; −1 where the fault does not matter.
+    """Final phase (32, 32) by index for each fault in each phase; −1 where the fault does not matter.
 
     Args:
         phases: of a mission, its ends included.

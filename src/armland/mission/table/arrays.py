@@ -12,7 +12,7 @@ from armland.mission.table.checks import check
 from armland.mission.table.phases import ARM, LINK, MAGNET, SIGNAL, UAV, Phase
 from armland.records import Record
 
-PHASES, GUARDS, CONDITIONS, FAULT_ROWS = 32, 64, 160, 16
+PHASES, GUARDS, CONDITIONS, FAULT_ROWS = 32, 64, 160, 32
 """Most phases, guards, conditions and faults of a mission."""
 
 PHASE = np.dtype(

@@ -30,8 +30,12 @@ SIGNALS = {
     "retries": "1",
     "bias_known": "1",
     "rotors": "N",
+    "lean": "deg",
+    "image_offset": "m",
 }
-"""What guards may ask for, and the unit. `offset` is horizontal, `pull` the vertical hinge force that pulls the UAV down."""
+"""What guards may ask for, and the unit. `offset` is horizontal, as reckoned; `image_offset` what the newest images show of it along
+the magnet's face; `pull` the vertical hinge force that pulls the UAV down, `lean` the angle of the UAV's z axis to the one that was
+asked for."""
 
 SIGNAL = {name: i for i, name in enumerate(SIGNALS)}
 
@@ -48,10 +52,13 @@ ARM = (
     "leave",
     "balance",
     "follow",
+    "lower",
+    "nod",
 )
 """Reference of the arm: rest where it is; septic blend from rest to below the plate; below the plate; the gap to the plate closes;
-septic move to the phase's target; septic move away downwards from where it is; give way to the hinge force; brakes on; run-up to the
-speed that the UAV is given, then on at it; down from below the UAV at its speed, and to rest; balance the UAV; the mission's path."""
+septic move to the phase's target; septic move away downwards from where it is; give way to the hinge force; brakes on; run-up to
+the speed that the UAV is given, then on at it; down from below the UAV at its speed, and to rest; balance the UAV; the mission's
+path; septic move to the phase's target, then on downwards at a steady speed; a nod, by which the tool is weighed."""
 
 UAV = ("autonomous", "station", "level", "ramp", "balance", "off", "run_up", "cruise", "hinged")
 """The UAV hovers by itself; keeps its station by the ground's estimate; level with the thrust it has; level with a
@@ -126,6 +133,8 @@ class Phase(NamedTuple):
     timeout_s: float = 10.0
     on_timeout: str = "abort"
     guards: tuple[Guard, ...] = ()
+    on_cradle: bool = False
+    """Whether the UAV may touch the cradle; to the judge a contact in another phase is a failure."""
     final: bool = False
     """Whether the mission ends here."""
 

@@ -28,7 +28,7 @@ import numpy as np
 from numba import njit
 
 from armland.plant.devices.camera_numbers import QUEUE
-from armland.plant.devices.detector_errors import claim, loss
+from armland.plant.devices.detector_errors import claim, loss, second_pose
 from armland.plant.noise import uniform
 from armland.plant.scene.eye import MARKER_DOWN
 from armland.records import Record
@@ -36,17 +36,18 @@ from armland.rotations import Array, conjugate, from_rotation_vector, matrix, mu
 
 
 @njit(cache=True)
-def look(k: int, told: Record, kept: Record, faults: Record, noise: Array, m: Record, t: Record) -> None:
+def look(k: int, told: Record, kept: Record, faults: Record, noise: Array, m: Record, t: Record, chance: float) -> None:
     """One tick of the camera in the scene.
 
     Args:
         k: present tick.
         told: of `camera_numbers.told_layout`.
         kept: of `camera_numbers.kept_layout`, updated.
-        faults: what fails, of `faults.kept_layout`.
+        faults: what fails, of `faults.table.kept_layout`.
         noise: standard normal numbers (12,), in the order of `noise.CAMERA_WIDTH`.
         m: measurement, whose fields of the camera are written.
         t: truth of the tick.
+        chance: a standard normal number, by which the second solution of a pose is taken or not.
     """
     m.camera_fresh = 0
     exposes = (k * told.rate_hz) % told.base_hz < told.rate_hz
@@ -59,24 +60,25 @@ def look(k: int, told: Record, kept: Record, faults: Record, noise: Array, m: Re
         kept.eye_quat, seen = t.ee_quat, multiply(t.quat, MARKER_DOWN)
         for i in range(4):
             kept.mark_quat[i] = seen[i]
-    observe(k, noise, faults.camera_frozen == 1, told, kept)
+    kept.chance = chance
+    observe(k, noise, faults.camera, told, kept)
     image = kept.sample
-    if not image.fresh or faults.camera_lost:
+    if not image.fresh or faults.camera.lost:
         return
-    m.camera_fresh, m.camera_capture = 1, image.capture
+    m.camera_fresh, m.camera_capture = 1, image.capture + told.stamp
     m.camera_position = image.position
     m.camera_quat = image.quat
     m.camera_sigma = image.sigma
 
 
 @njit(cache=True)
-def observe(k: int, noise: Array, frozen: bool, told: Record, kept: Record) -> None:
+def observe(k: int, noise: Array, errors: Record, told: Record, kept: Record) -> None:
     """Expose when it is time, deliver into `kept.sample` what is due; else its `fresh` is 0.
 
     Args:
         k: present tick; exposures are the ticks nearest after multiples of 1/rate, so that their mean rate is exact.
         noise: standard normal numbers (12,), in the order of `noise.CAMERA_WIDTH`.
-        frozen: the fault: what the last image showed is delivered again and again, with stamps that look new.
+        errors: what fails, of `camera_numbers.ERRORS`.
         told: of `camera_numbers.told_layout`.
         kept: of `camera_numbers.kept_layout`, updated; its `eye`, `eye_quat`, `mark`, `mark_quat` are the true poses now.
     """
@@ -86,15 +88,18 @@ def observe(k: int, noise: Array, frozen: bool, told: Record, kept: Record) -> N
             offset[i] = kept.mark[i] - kept.eye[i]
         offset = turned_back(matrix(kept.eye_quat), offset)
         quat = multiply(conjugate(kept.eye_quat), kept.mark_quat)
-        if frozen:
+        if errors.frozen:
             found = kept.end > 0
         else:
             lose = told.stay_lost if kept.lost else told.lose
             stays = (1.0 - lose) * (1.0 - _smeared(k, offset, told, kept))
             kept.lost = 1 if uniform(noise[7]) < 1.0 - stays else 0
+            beside = turned_back(matrix(kept.eye_quat), errors.marker)
+            for i in range(3):
+                offset[i] += beside[i]
             found = not kept.lost and visible(offset, matrix(quat), told)
             if found:
-                _detect(offset, quat, noise, told, kept.image)
+                _detect(offset, quat, noise, errors, told, kept)
         if found:
             _enqueue(k, noise[6], told, kept)
     kept.sample.fresh = 0
@@ -146,15 +151,25 @@ def _smeared(k: int, offset: Array, told: Record, kept: Record) -> float:
 
 
 @njit(cache=True)
-def _detect(offset: Array, quat: Array, noise: Array, told: Record, image: Record) -> None:
+def _detect(offset: Array, quat: Array, noise: Array, errors: Record, told: Record, kept: Record) -> None:
+    image = kept.image
     claim(offset[2], told, image.sigma)
     stray = told.outlier_m if told.outlier > 0.0 and uniform(noise[8]) < told.outlier else 0.0
+    stray = max(stray, errors.outlier)
+    honesty = told.honesty * errors.noise
+    flips = errors.flipped or (told.flip > 0.0 and uniform(kept.chance) < told.flip)
+    seen = second_pose(offset, quat) if flips else quat
     turn = np.empty(3)
     for i in range(3):
         bias = told.shift[i] + told.slope[i] * offset[2]
-        image.position[i] = offset[i] + bias + told.honesty * image.sigma[i] * noise[i] + stray * noise[9 + i]
-        turn[i] = told.honesty * image.sigma[3 + i] * noise[3 + i]
-    noisy = multiply(from_rotation_vector(turn), quat)
+        image.position[i] = offset[i] + bias + honesty * image.sigma[i] * noise[i] + stray * noise[9 + i]
+        turn[i] = honesty * image.sigma[3 + i] * noise[3 + i]
+    noisy = multiply(from_rotation_vector(turn), seen)
+    if told.askew:
+        beside = turned(matrix(told.turn), image.position)
+        noisy = multiply(told.turn, noisy)
+        for i in range(3):
+            image.position[i] = beside[i]
     for i in range(4):
         image.quat[i] = noisy[i]
 

@@ -28,6 +28,26 @@ SAMPLE = np.dtype(
 )
 
 
+ERRORS = np.dtype(
+    [
+        ("frozen", "i8"),  # 1: what the last image showed is delivered again and again, with stamps that look new
+        ("lost", "i8"),  # 1: nothing is delivered
+        ("flipped", "i8"),  # 1: attitudes are the second solution, `detector_errors.second_pose`
+        ("noise", "f8"),  # factor on the noise, not on what is claimed
+        ("outlier", "f8"),  # m, standard deviation of what each position is off by, each axis; 0: not at all
+        ("marker", "f8", (3,)),  # m, W, from the marker to what is found
+    ]
+)
+"""What fails in the camera."""
+
+
+def well() -> Records:
+    """`ERRORS` (1,) of a camera without faults."""
+    errors: Records = np.zeros(1, ERRORS)
+    errors["noise"] = 1.0
+    return errors
+
+
 def told_layout(joints: int) -> np.dtype:
     """What the camera is told."""
     return np.dtype(
@@ -58,6 +78,10 @@ def told_layout(joints: int) -> np.dtype:
             ("stay_lost", "f8"),  # probability that a marker not found in the last image is not found in this one
             ("outlier", "f8"),  # probability that what is found lies elsewhere
             ("outlier_m", "f8"),  # standard deviation of how far, each axis, m
+            ("flip", "f8"),  # probability of the second solution of the pose
+            ("askew", "i8"),  # 1 where the camera is turned on its mount
+            ("turn", "f8", (4,)),  # by which, camera<-camera as believed
+            ("stamp", "i8"),  # ticks by which its stamps are late
         ]
     )
 
@@ -71,6 +95,7 @@ def kept_layout(joints: int) -> np.dtype:
             ("first", "i8"),  # images delivered so far
             ("end", "i8"),  # images captured so far that showed a marker
             ("lost", "i8"),
+            ("chance", "f8"),  # standard normal, by which the second solution is taken or not
             ("gaze", "f8", (2,)),  # x/z, y/z of the marker at the last exposure
             ("gazed", "i8"),  # tick after it, 0: none yet
             ("image", SAMPLE),  # what the last image with a marker showed

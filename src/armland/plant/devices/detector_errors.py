@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit
 
 from armland.records import Record
-from armland.rotations import Array
+from armland.rotations import Array, multiply
 
 SIZE_M = 0.06
 """Marker of the fit."""
@@ -81,3 +81,21 @@ def loss(smear: float, cell: float, b: Array) -> float:
     rest = 1.0 / (1.0 + np.exp(-b[0]))
     moved = 1.0 / (1.0 + np.exp(-(b[0] + b[1] * smear / cell + b[2] * smear)))
     return float((moved - rest) / (1.0 - rest))
+
+
+@njit(cache=True)
+def second_pose(offset: Array, quat: Array) -> Array:
+    """The other attitude (4,) that makes nearly the same picture of a planar marker: mirrored about the line of sight.
+
+    Far from the camera, a picture shows p - l (l·p) of each point p of the marker, l being the line of sight; with depths of the
+    other sign it is the same. So R' = S R diag(1, 1, -1) with S = 1 - 2 l lᵀ, which is a half turn about l after one about the
+    marker's normal. Source: T. Collins, A. Bartoli, "Infinitesimal plane-based pose estimation", IJCV 109 (2014).
+
+    Args:
+        offset: marker's centre (3,), m, camera frame, not at its origin.
+        quat: its attitude (4,), a unit quaternion, camera<-marker.
+    """
+    distance = np.sqrt(offset[0] ** 2 + offset[1] ** 2 + offset[2] ** 2)
+    about_sight = np.array([0.0, offset[0] / distance, offset[1] / distance, offset[2] / distance])
+    about_normal = np.array([0.0, 0.0, 0.0, 1.0])
+    return multiply(about_sight, multiply(quat, about_normal))

@@ -4,6 +4,7 @@
 |---|---|---|
 | b | `bias` (4,): q_imu = b ⊗ q_true ⊗ noise: heading and tilt that the UAV gets wrong | 1, W |
 | ω₀ | `rate_bias` (3,) | rad/s, B |
+| | `drift`: rate at which the heading that it believes runs away | rad/s |
 """
 
 import numpy as np
@@ -23,6 +24,8 @@ def told_layout(joints: int) -> np.dtype:
             ("sigma_rate", "f8"),  # rad/s
             ("bias", "f8", (4,)),
             ("rate_bias", "f8", (3,)),
+            ("drift", "f8"),
+            ("tick_s", "f8"),
         ]
     )
 
@@ -35,6 +38,7 @@ def kept_layout(joints: int) -> np.dtype:
 def tell(told: Records, scenario: Scenario, bias: Array, noisy: bool) -> None:
     """Fill `told` (1,); `bias` (4,) as above, `noisy` says whether there is white noise."""
     told["period"], told["bias"] = scenario.run.rate_hz // scenario.onboard.rate_hz, bias
+    told["tick_s"] = 1.0 / scenario.run.rate_hz
     if noisy:
         told["sigma_attitude"], told["sigma_rate"] = scenario.sensors.attitude_rad, scenario.sensors.rate_rad_s
 
@@ -57,5 +61,7 @@ def sample(k: int, told: Record, kept: Record, noise: Array, t: Record) -> None:
         tilt[i] = told.sigma_attitude * noise[i]
         kept.rate[i] = t.omega[i] + told.rate_bias[i] + told.sigma_rate * noise[3 + i]
     quat = multiply(multiply(told.bias, t.quat), from_rotation_vector(tilt))
+    if told.drift != 0.0:
+        quat = multiply(from_rotation_vector(np.array([0.0, 0.0, told.drift * told.tick_s * k])), quat)
     for i in range(4):
         kept.quat[i] = quat[i]

@@ -9,6 +9,10 @@ arrived is dropped.
 | `up`, `down` | delay | ticks |
 | `jitter_up`, `jitter_down` | largest further delay, drawn anew at every tick | ticks |
 | `loss_up`, `loss_down` | probability that a message is lost | 1 |
+| `burst` | correlation of a message's loss with that of the one before | 1 |
+| `stamp` | by how much the UAV's stamps are late | ticks |
+
+A fault adds its own lateness, `faults.late`; a delay never exceeds what the lines hold.
 """
 
 import numpy as np
@@ -20,26 +24,41 @@ from armland.records import Record, Records
 from armland.rotations import Array
 from armland.scenario import Scenario
 
+WEAK_SAMPLES = 2
+"""Samples in a row that make a weak rotor a lost one."""
+
 RING = 1024
 """Length of the delay lines in ticks; the longest delay that can be simulated is one tick less."""
 
 MESSAGE = np.dtype([("quat", "f8", (4,)), ("delta_tau", "f8", (3,)), ("thrust", "f8"), ("mode", "i8"), ("sent", "i8")])
 """Upwards: set-point, Δτ_att in N·m, thrust in N, mode, and the tick at which it was sent; -1: lost, or none yet."""
 
-SAMPLE = np.dtype([("quat", "f8", (4,)), ("rate", "f8", (3,)), ("heard", "i8"), ("sent", "i8")])
-"""Downwards: attitude, rates in rad/s, tick at which the UAV had heard its newest command, and tick of the sample."""
+SAMPLE = np.dtype(
+    [
+        ("quat", "f8", (4,)),
+        ("rate", "f8", (3,)),
+        ("heard", "i8"),
+        ("echo", "i8"),
+        ("rotors", "f8", (4,)),
+        ("weak", "i8"),
+        ("sent", "i8"),
+    ]
+)
+"""Downwards: attitude, rates in rad/s, tick at which the UAV had heard its newest command and at which that was sent, thrusts asked of
+the rotors in N, whether one is weak, and tick of the sample."""
 
 
 def told_layout(joints: int) -> np.dtype:
     """What the link is told."""
-    whole = [(name, "i8") for name in ("up", "down", "period", "jitter_up", "jitter_down")]
-    return np.dtype([*whole, ("loss_up", "f8"), ("loss_down", "f8")])
+    whole = [(name, "i8") for name in ("up", "down", "period", "jitter_up", "jitter_down", "stamp")]
+    return np.dtype([*whole, ("loss_up", "f8"), ("loss_down", "f8"), ("burst", "f8")])
 
 
 def kept_layout(joints: int) -> np.dtype:
     """What the link keeps: its lines, the newest message on board with the tick of its arrival, the newest sample's tick."""
     lines = [("up", MESSAGE, (RING,)), ("down", SAMPLE, (RING,)), ("arrived", MESSAGE)]
-    return np.dtype([*lines, ("heard", "i8"), ("received", "i8")])
+    lost = [("lost_up", "i8"), ("lost_down", "i8")]
+    return np.dtype([*lines, ("heard", "i8"), ("received", "i8"), *lost])
 
 
 def tell(told: Records, scenario: Scenario) -> None:
@@ -66,7 +85,8 @@ def _ticks(name: str, delay_ms: float, rate: int) -> int:
 def send(k: int, told: Record, kept: Record, faults: Record, noise: Array, c: Record) -> None:
     """Send the command `c` of tick `k` up; `noise` (4,) is standard normal."""
     message = kept.up[k % RING]
-    lost = faults.uplink_lost or (told.loss_up > 0.0 and uniform(noise[0]) < told.loss_up)
+    kept.lost_up = _lost(told.loss_up, told.burst, kept.lost_up, noise[0])
+    lost = faults.uplink_lost or kept.lost_up
     message.sent = -1 if lost else k
     message.quat = c.uav_quat
     message.delta_tau = c.delta_tau
@@ -74,10 +94,10 @@ def send(k: int, told: Record, kept: Record, faults: Record, noise: Array, c: Re
 
 
 @njit(cache=True)
-def arrive(k: int, told: Record, kept: Record, noise: Array) -> None:
+def arrive(k: int, told: Record, kept: Record, faults: Record, noise: Array) -> None:
     """Put what arrives on board at tick `k` into `kept.arrived`; `noise` (4,) is standard normal."""
-    sent = k - told.up - _lateness(told.jitter_up, noise[1])
-    if sent < 0:
+    sent = k - min(told.up + _lateness(told.jitter_up, noise[1]) + faults.late, RING - 1)
+    if sent < 0 or faults.unpowered:
         return
     message, newest = kept.up[sent % RING], kept.arrived
     if message.sent != sent or sent <= newest.sent:
@@ -89,15 +109,22 @@ def arrive(k: int, told: Record, kept: Record, noise: Array) -> None:
 
 
 @njit(cache=True)
-def report(k: int, told: Record, kept: Record, imu: Record, noise: Array) -> None:
-    """Send the UAV's sample `imu` (of `imu.kept_layout`) down where tick `k` is one of the link's; `noise` (4,) is standard normal."""
+def report(k: int, world: Record, noise: Array) -> None:
+    """Send the UAV's sample down where tick `k` is one of the link's: of attitude, rates and rotors, as the record `world` keeps them.
+
+    `noise` (4,) is standard normal.
+    """
+    told, kept = world.told.link, world.kept.link
     if k % told.period:
         return
     row = kept.down[k % RING]
-    row.sent = -1 if told.loss_down > 0.0 and uniform(noise[2]) < told.loss_down else k
-    row.quat = imu.quat
-    row.rate = imu.rate
-    row.heard = kept.heard
+    kept.lost_down = _lost(told.loss_down, told.burst, kept.lost_down, noise[2])
+    row.sent = -1 if kept.lost_down or world.kept.faults.unpowered else k
+    row.quat = world.kept.imu.quat
+    row.rate = world.kept.imu.rate
+    row.rotors = world.kept.rotors.asked
+    row.weak = 1 if world.kept.onboard.weak >= WEAK_SAMPLES or world.kept.onboard.cut else 0
+    row.heard, row.echo = kept.heard, kept.arrived.sent
 
 
 @njit(cache=True)
@@ -106,11 +133,12 @@ def receive(k: int, told: Record, kept: Record, faults: Record, noise: Array, m:
 
     `noise` (4,) is standard normal.
     """
-    taken = k - told.down - _lateness(told.jitter_down, noise[3])
+    taken = k - min(told.down + _lateness(told.jitter_down, noise[3]) + faults.late, RING - 1)
     if taken < 0:
         if kept.received < 0:
             # Before the first sample has arrived the ground knows the attitude from before the run.
             m.uav_quat = kept.down[0].quat
+            m.uav_rotors = kept.down[0].rotors
             for i in range(3):
                 m.uav_rate[i] = 0.0
         return
@@ -121,11 +149,21 @@ def receive(k: int, told: Record, kept: Record, faults: Record, noise: Array, m:
     row = kept.down[taken % RING]
     if faults.downlink_lost or row.sent != taken:
         return
-    m.uav_tick, m.uav_heard = taken, row.heard
+    m.uav_tick, m.uav_heard, m.uav_echo = taken + told.stamp, row.heard, row.echo
     m.uav_quat = row.quat
     m.uav_rate = row.rate
+    m.uav_rotors = row.rotors
+    m.uav_weak = row.weak
 
 
 @njit(cache=True)
 def _lateness(most: int, normal: float) -> int:
     return int(uniform(normal) * (most + 1)) if most > 0 else 0
+
+
+@njit(cache=True)
+def _lost(loss: float, burst: float, before: int, normal: float) -> int:
+    # A chain of two states with the mean `loss` and the correlation `burst` from one message to the next.
+    if loss <= 0.0:
+        return 0
+    return 1 if uniform(normal) < loss + burst * (before - loss) else 0

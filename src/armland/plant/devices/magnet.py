@@ -5,6 +5,7 @@
 | F₀, g₀ | `rated`, `gap_scale`: pull of F(g) = F₀/(1 + g/g₀)² on a plate at gap g | N, m |
 | i | `current`, share of the rated current; the pull goes with i², as F = (N i)² μ₀ A / (2 g²) does | 1 |
 | | `coil`: share of the rated current that the coil lets through; less than 1 is damage | 1 |
+| | `dirt`: thickness of what lies between the faces | m |
 | | `report_gain`, `report_offset`: the force that it reports over the one that its current promises, and beyond it | 1, N |
 
 The face is four pads on a circle. Each pulls the plate with its share of F at its own gap, by forces from outside
@@ -31,12 +32,12 @@ TOUCHING_M = 2e-5
 """Gap below which a pad counts as touching."""
 
 HEALTHY = 0.9
-"""Share of the rating below which a reported force is a fault."""
+"""Share of the rated force below which a current is a fault."""
 
 
 def told_layout(joints: int) -> np.dtype:
     """What the magnet is told."""
-    numbers = ("rated", "gap_scale", "residual", "coil", "report_gain", "report_offset")
+    numbers = ("rated", "gap_scale", "residual", "coil", "report_gain", "report_offset", "dirt")
     return np.dtype(
         [
             ("fitted", "i8"),  # 0 where the scene has none
@@ -122,10 +123,11 @@ def energise(
         xipos: bodies' centres of mass (nbody, 3), m, W.
         told: of `told_layout`.
         kept: of `kept_layout`, updated.
-        faults: what fails, of `faults.kept_layout`.
+        faults: what fails, of `faults.table.kept_layout`.
         xfrc: MuJoCo's `xfrc_applied` (nbody, 6), N, N·m, W, written.
     """
     rated = told.rated * faults.rating
+    residual = max(told.residual, faults.residual * rated)
     _switch(command, rated, told, kept, faults.coil)
     b, plate, tool = told.plate_geom, told.plate, told.tool
     nx, ny, nz = geom_xmat[b, 2], geom_xmat[b, 5], geom_xmat[b, 8]
@@ -141,7 +143,7 @@ def energise(
         if dx * dx + dy * dy + dz * dz - height * height > told.plate_radius**2 or height > 0.0:
             continue
         kept.touching += kept.gap[i] < TOUCHING_M
-        force = pull(kept.gap[i], kept.current, rated, told.gap_scale, told.residual) / PADS
+        force = pull(kept.gap[i] + told.dirt, kept.current, rated, told.gap_scale, residual) / PADS
         kept.pull += force
         fx, fy, fz = force * nx, force * ny, force * nz
         _push(xfrc[plate], x - xipos[plate, 0], y - xipos[plate, 1], z - xipos[plate, 2], -fx, -fy, -fz)
@@ -166,6 +168,6 @@ def _switch(command: int, rated: float, told: Record, kept: Record, coil: float)
     # A coil that fails later, while it holds something, is found as well.
     if kept.on_ticks == told.test_ticks or (tested and command == ON):
         kept.report = told.report_gain * (rated * kept.current * kept.current) + told.report_offset
-        kept.fault = kept.report < HEALTHY * rated
+        kept.fault = kept.current * kept.current < HEALTHY
     wanted = told.coil * coil if command == ON or (command == TEST and not tested) else 0.0
     kept.current += told.current_gain * (wanted - kept.current)

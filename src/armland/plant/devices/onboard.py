@@ -17,7 +17,7 @@ from numba import njit
 from armland.control.laws.station_keeping import StationGains, StationReference, keep_station
 from armland.models.uav import allocate
 from armland.plant.devices.attitude import attitude_layout, attitude_torque, find_disturbance, tell_attitude
-from armland.plant.devices.link import arrive
+from armland.plant.devices.link import WEAK_SAMPLES, arrive
 from armland.plant.noise import Noise
 from armland.plant.scene.composition import Scene
 from armland.records import Record, Records, UavMode
@@ -27,8 +27,8 @@ from armland.scenario import Scenario
 WATCHED_N = 0.3
 """Thrust from which on a rotor is watched, N."""
 
-WEAK_SAMPLES = 2
-"""Samples in a row that make a weak rotor a lost one."""
+SPEED_CORRELATED_S = 0.3
+"""Correlation time of the error of its own velocity. Assumption: optical flow over moving light and shade."""
 
 AUTONOMOUS, GUIDED, HELD, CAUGHT = UavMode.AUTONOMOUS, UavMode.GUIDED, UavMode.HELD, UavMode.CAUGHT
 LANDED, OFF, HINGED = UavMode.LANDED, UavMode.OFF, UavMode.HINGED
@@ -58,6 +58,10 @@ def told_layout(joints: int) -> np.dtype:
             ("torque_limit", "f8", (3,)),  # N·m, largest Δτ that it accepts
             ("mass", "f8"),  # kg that it believes
             ("hover_noise", "f8"),  # m
+            ("speed_sigma", "f8"),  # m/s, of the velocity that it hovers by, each axis
+            ("speed_hold", "f8"),  # share of that error which is left after a sample
+            ("speed_bias", "f8", (3,)),  # m/s
+            ("trim", "f8"),  # m/s², by which the integral is off at the start
             *((name, "f8") for name in HOVER),
             ("rotor_min", "f8"),
             ("rotor_max", "f8"),
@@ -74,6 +78,7 @@ def kept_layout(joints: int) -> np.dtype:
             ("hovering", "i8"),
             ("anchor", "f8", (3,)),  # m, W, where it hovers by itself
             ("heading", "f8"),  # rad
+            ("speed_error", "f8", (3,)),  # m/s
             ("integral", "f8", (3,)),  # of the hover's position loop; kept: what it knows of its own thrust
             ("thrust", "f8"),  # N, set-point in use
             ("filtered", "f8", (3,)),  # rate that the attitude loop's derivative has filtered, rad/s
@@ -94,6 +99,7 @@ def tell(told: Records, scenario: Scenario, scene: Scene, mixer: Array) -> None:
     told["climb"], told["watch"], told["run_down"] = o.climb_m, o.rotor_watch, o.run_down_nps * (1.0 / o.rate_hz)
     told["effectiveness"], told["torque_limit"] = link.torque_effectiveness, link.torque_limit_nm
     told["mass"], told["hover_noise"] = scene.uav_mass, scenario.imperfections.hover_noise_m
+    told["speed_hold"] = np.exp(-1.0 / (o.rate_hz * SPEED_CORRELATED_S))
     h = o.hover
     told["k_position"], told["k_velocity"], told["k_integral"] = h.k_position, h.k_velocity, h.k_integral
     told["speed_max"], told["integral_max"] = h.speed_max_mps, h.integral_max_mps2
@@ -116,12 +122,17 @@ def fly(k: int, world: Record, noise: Noise, row: int, t: Record) -> None:
     """
     told, kept = world.told, world.kept
     p, s = told.onboard, kept.onboard
-    arrive(k, told.link, kept.link, noise.link[row])
+    arrive(k, told.link, kept.link, kept.faults, noise.link[row])
+    if kept.faults.unpowered:
+        s.hovering = 0
+        for i in range(4):
+            kept.rotors.asked[i] = 0.0
+        return
     arrived = kept.link.arrived
     mode, silent = arrived.mode, k - kept.link.heard > p.watchdog
     q_d, extra = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
     if kept.faults.deaf or mode == AUTONOMOUS or (silent and mode in (GUIDED, CAUGHT)):
-        q_d = _hover(world, t, noise.hover[row], p.climb if silent else 0.0)
+        q_d = _hover(world, t, noise.hover[row], noise.speed[row], p.climb if silent else 0.0)
     else:
         s.hovering = 0
         if mode != HINGED:
@@ -161,8 +172,9 @@ def _watch(mode: int, p: Record, s: Record, rotors: Record) -> bool:
 
 
 @njit(cache=True)
-def _hover(world: Record, t: Record, noise: Array, climb: float) -> Array:
-    # Own position estimate: the true one and white noise, in the UAV's own idea of the axes.
+def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float) -> Array:
+    # Own position estimate: the true one and white noise, in the UAV's own idea of the axes; own velocity: the true one, a bias, and
+    # noise that is correlated.
     kept, bias = world.kept, world.told.imu.bias
     p, s, quat = world.told.onboard, kept.onboard, kept.imu.quat
     if not s.hovering:
@@ -174,7 +186,10 @@ def _hover(world: Record, t: Record, noise: Array, climb: float) -> Array:
     c, d, e = np.cos(own), np.sin(own), np.empty(3)
     for i in range(3):
         e[i] = (s.anchor[i] + kept.faults.away[i]) - (t.r_cm[i] + p.hover_noise * noise[i])
-    v, still = t.v_cm, np.zeros(3)
+    v, still, fresh = np.empty(3), np.zeros(3), np.sqrt(1.0 - p.speed_hold**2)
+    for i in range(3):
+        s.speed_error[i] = p.speed_hold * s.speed_error[i] + p.speed_sigma * fresh * speed[i]
+        v[i] = t.v_cm[i] + p.speed_bias[i] + s.speed_error[i]
     turned = np.array([c * e[0] - d * e[1], d * e[0] + c * e[1], e[2]])
     moving = np.array([c * v[0] - d * v[1], d * v[0] + c * v[1], v[2]])
     gains = StationGains(

@@ -9,7 +9,8 @@
 | | `due` (4,): the same where all is well: what each is expected to give | N |
 | | `lift` (4,): thrust that each gives, moving through the air, `models.inflow` (I.2) | N |
 | c | `drag`: linear, horizontal | N·s/m |
-| v_a | `air` (3,): velocity of the air | m/s, W |
+| c_T, T_h | `curve`, `hover`: g grows by c_T (T*/T_h − 1), T_h what each gives in hover | 1, N |
+| | `sag`: share of the thrust that the battery loses in a tick | 1 |
 | | `force` (3,), `moment` (3,): constant disturbance at the centre of mass | N [W], N·m [B] |
 """
 
@@ -34,12 +35,14 @@ def told_layout(joints: int) -> np.dtype:
             ("lag", "f8"),
             ("tick_s", "f8"),
             ("gain", "f8", (4,)),
+            ("curve", "f8"),
+            ("hover", "f8"),
+            ("sag", "f8"),
             ("inflow", "i8"),  # 1 where the rotors feel their own motion
             ("disc", "f8"),  # 2ρA of one rotor, kg/m
             ("slope", "f8"),
             ("advance", "f8"),
             ("drag", "f8"),
-            ("air", "f8", (3,)),
             ("force", "f8", (3,)),
             ("moment", "f8", (3,)),
         ]
@@ -58,6 +61,7 @@ def tell(told: Records, scenario: Scenario, scene: Scene, thrust_factor: float) 
     told["mixer"] = mixer(place - scene.model.site(f"{UAV}cm").pos, r.drag_torque_m)
     told["lag"], told["tick_s"] = 1.0 - np.exp(-1.0 / (rate * r.time_constant_s)), 1.0 / rate
     told["gain"], told["drag"] = thrust_factor, scenario.uav.drag_nspm
+    told["hover"] = -scenario.environment.gravity_mps2[2] * scene.uav_mass / ROTORS
     told["inflow"], told["slope"] = r.inflow, r.slope
     told["disc"] = disc_of(r.radius_m, scenario.environment.air_density_kgm3)
     told["advance"] = advance_of(r.slope, r.inflow_ratio)
@@ -65,15 +69,17 @@ def tell(told: Records, scenario: Scenario, scene: Scene, thrust_factor: float) 
 
 
 @njit(cache=True)
-def spin(told: Record, kept: Record, faults: Record, t: Record, applied: Array) -> None:
+def spin(k: int, told: Record, kept: Record, faults: Record, air: Record, t: Record, applied: Array) -> None:
     """One tick of the rotors.
 
     The wrench comes from outside (MuJoCo's `xfrc_applied`), because MuJoCo's force sensors do not see actuators that act at a site.
 
     Args:
+        k: present tick.
         told: of `told_layout`.
         kept: of `kept_layout`, updated.
-        faults: what fails, of `faults.kept_layout`.
+        faults: what fails, of `faults.table.kept_layout`.
+        air: what the air does, of `air.kept_layout`.
         t: truth of the present tick.
         applied: (6,) N, N·m, W: wrench on the UAV at its centre of mass, written.
     """
@@ -82,36 +88,39 @@ def spin(told: Record, kept: Record, faults: Record, t: Record, applied: Array) 
     for i in range(3):
         turn[i] = t.omega[i] * told.tick_s
     R = matrix(multiply(t.quat, from_rotation_vector(turn)))
-    for k in range(4):
-        kept.due[k] += told.lag * (kept.asked[k] - kept.due[k])
-        kept.static[k] += told.lag * (kept.asked[k] * told.gain[k] * faults.rotor[k] - kept.static[k])
-    _move_through_air(R, t, told, kept)
+    charge = max(1.0 - told.sag * k, 0.0)
+    for i in range(4):
+        kept.due[i] += told.lag * (kept.asked[i] - kept.due[i])
+        gain = told.gain[i] * (1.0 + told.curve * (kept.asked[i] / told.hover - 1.0)) * charge
+        kept.static[i] += told.lag * (kept.asked[i] * gain * faults.rotor[i] - kept.static[i])
+    _move_through_air(R, t, told, kept, air)
     thrust, x, y, z = 0.0, 0.0, 0.0, 0.0
-    for k in range(4):
-        thrust += told.mixer[0, k] * kept.lift[k]
-        x += told.mixer[1, k] * kept.lift[k]
-        y += told.mixer[2, k] * kept.lift[k]
-        z += told.mixer[3, k] * kept.lift[k]
+    for i in range(4):
+        thrust += told.mixer[0, i] * kept.lift[i]
+        x += told.mixer[1, i] * kept.lift[i]
+        y += told.mixer[2, i] * kept.lift[i]
+        z += told.mixer[3, i] * kept.lift[i]
     x, y, z = x + told.moment[0], y + told.moment[1], z + told.moment[2]
     for i in range(3):
         applied[i] = R[i, 2] * thrust + (told.force[i] + faults.force[i])
         if i < 2:
-            applied[i] -= told.drag * (t.v_cm[i] - told.air[i])
+            applied[i] -= told.drag * (t.v_cm[i] - air.velocity[i])
         applied[3 + i] = faults.torque[i] + R[i, 0] * x + R[i, 1] * y + R[i, 2] * z
 
 
 @njit(cache=True)
-def _move_through_air(R: Array, t: Record, told: Record, kept: Record) -> None:
-    # What each rotor gives of its static thrust, by the velocity of its hub through the air.
+def _move_through_air(R: Array, t: Record, told: Record, kept: Record, air: Record) -> None:
+    # What each rotor gives of its static thrust, by the velocity of its hub through the air and by what is below it.
     if not told.inflow:
-        kept.lift = kept.static
+        for i in range(4):
+            kept.lift[i] = kept.static[i] * air.lift
         return
     x, y, z = 0.0, 0.0, 0.0
     for i in range(3):
-        v = t.v_cm[i] - told.air[i]
+        v = t.v_cm[i] - air.velocity[i]
         x, y, z = x + R[i, 0] * v, y + R[i, 1] * v, z + R[i, 2] * v
     in_plane = np.sqrt(x * x + y * y)
     for k in range(4):
         axial = z + t.omega[0] * told.mixer[1, k] + t.omega[1] * told.mixer[2, k]
         f = factor_at_speed(kept.static[k], in_plane, axial, told.disc, told.slope, told.advance)
-        kept.lift[k] = kept.static[k] * f
+        kept.lift[k] = kept.static[k] * f * air.lift

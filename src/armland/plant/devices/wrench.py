@@ -6,8 +6,9 @@
 | G | `gain` (6, 6): 1 on the diagonal is a calibrated channel, what stands beside it is cross-talk | 1, m, 1/m |
 | b, ḃ | `bias` (6,), `drift` (6,) | N, N·m; N/s, N·m/s |
 | α | `filter_gain`: share of a step that the low-pass makes in one tick | 1 |
+| β | `faults.bridge`: what the strain gauges give of what they should; 1 where they are well | 1 |
 
-y ← y + α (G w + b + ḃ t + noise − y); the first sample starts the filter where the sensor is.
+y ← y + α (β G w + b + ḃ t + noise − y); the first sample starts the filter where the sensor is.
 """
 
 import numpy as np
@@ -61,7 +62,7 @@ def sample(k: int, data: Array, told: Record, kept: Record, faults: Record, nois
         data: MuJoCo's `sensordata` (nsensordata,), in the units of each sensor: m, rad, N, 1 for quaternions.
         told: of `told_layout`.
         kept: of `kept_layout`, updated.
-        faults: what fails, of `faults.kept_layout`.
+        faults: what fails, of `faults.table.kept_layout`.
         noise: standard normal numbers (6,).
         m: `wrench` N, N·m and `wrench_tick` are written.
     """
@@ -73,6 +74,7 @@ def sample(k: int, data: Array, told: Record, kept: Record, faults: Record, nois
             raw += told.gain[i, j] * data[told.at_force + j]
         for j in range(3):
             raw += told.gain[i, 3 + j] * data[told.at_torque + j]
+        raw *= faults.bridge
         raw += told.bias[i] + told.sigma[i] * noise[i]
         raw += told.drift[i] * (k * told.tick_s)
         if i == 2:

@@ -22,7 +22,7 @@ from armland.plant.scene.eye import mount_camera, mount_marker
 from armland.plant.scene.gear import add_cradle, add_tool, check_gear, couple, cradle_position
 from armland.plant.scene.sensors import add_sensors, sensor_addresses
 from armland.plant.scene.surroundings import add_surroundings
-from armland.plant.scene.uav import ON_ARM, ON_UAV, PLATE, UAV, hinge_on_arm, let_fly, site, uav_spec
+from armland.plant.scene.uav import ON_ARM, ON_UAV, PLATE, UAV, hinge_on_arm, let_fly, set_stops, site, uav_spec
 from armland.rotations import Array
 from armland.scenario import Scenario
 
@@ -68,6 +68,7 @@ def build_scene(scenario: Scenario, bond: Bond, parts: tuple[str, ...] = PARTS) 
     """
     spec, joints = scene_spec(scenario, bond, parts)
     model = compile_spec(spec, "the scene")
+    set_stops(model, scenario.hinge)
     scale_inertia(model, scenario.arm.inertia_scale, [model.joint(name).id for name in joints])
     return _scene(model, joints, scenario, bond, parts if bond == "free" else ())
 
@@ -126,7 +127,7 @@ def _add_free(spec: mujoco.MjSpec, uav: mujoco.MjSpec, scenario: Scenario, parts
         mount_marker(body, scenario.camera)
     spec.worldbody.add_frame().attach_body(body, UAV, "")
     if "cradle" in parts:
-        add_cradle(spec, scenario.cradle, cradle_position(scenario, lever))
+        add_cradle(spec, scenario, cradle_position(scenario, lever))
 
 
 def _scene(model: mujoco.MjModel, joints: list[str], scenario: Scenario, bond: Bond, parts: tuple[str, ...]) -> Scene:

@@ -2,8 +2,12 @@
 
 import mujoco
 
+from armland.plant.scene.closing import RATE, closing
 from armland.plant.scene.eye import HOUSING
 from armland.plant.scene.uav import PLATE, UAV
+
+OPEN_M, HINT_N = 5e-5, 1e-3
+"""Gap at which a skid has left a rail, and the adhesion up to it: too small to hold anything."""
 
 
 def add_contacts(spec: mujoco.MjSpec, links: list[str]) -> None:
@@ -22,16 +26,19 @@ def add_contacts(spec: mujoco.MjSpec, links: list[str]) -> None:
         for one in ones:
             for other in others:
                 if {one, other} <= here:
-                    _add_pair(spec, one, other, friction)
+                    _add_pair(spec, one, other, friction, one in skids and other in rails)
 
 
-def _add_pair(spec: mujoco.MjSpec, one: str, other: str, friction: float) -> None:
+def _add_pair(spec: mujoco.MjSpec, one: str, other: str, friction: float, bears: bool) -> None:
     spec.add_pair(
         geomname1=one,
         geomname2=other,
         condim=3,
         friction=[friction, friction, 0.0, 0.0, 0.0],
-        # Rubber: gives way within 10 ms (assumption), stiff enough to stand within 0.1 mm.
-        solref=[0.01, 1.0],
-        solimp=[0.98, 0.99, 0.001, 0.5, 2.0],
+        # What gives way is the cradle, and not this: a load of 20 N presses skid and rail together by 1 µm.
+        solref=closing(RATE, spec.option.timestep),
+        solimp=[0.999, 0.999, 0.001, 0.5, 2.0],
+        # So hard a contact would open for a step while its load changes. A hint of adhesion keeps it active until it has opened.
+        gap=OPEN_M if bears else 0.0,
+        adhesion=HINT_N if bears else 0.0,
     )

@@ -8,10 +8,11 @@ import numpy as np
 
 from armland.errors import ConfigurationError, ModelError
 from armland.plant.scene.arm import add_capsule
+from armland.plant.scene.compliance import modes, rest_on_buffers
 from armland.plant.scene.uav import PLATE
 from armland.rotations import Array
 from armland.scenario import Scenario
-from armland.scenario.gear import Cradle, Magnet
+from armland.scenario.gear import Magnet
 
 PADS = 4
 
@@ -116,15 +117,23 @@ def cradle_position(scenario: Scenario, lever: Array) -> Array:
     return np.round(position, 9)
 
 
-def add_cradle(spec: mujoco.MjSpec, c: Cradle, position: Array) -> None:
-    """Put two rails on legs at `position` (3,), m, D, that leave a slot between them."""
+def add_cradle(spec: mujoco.MjSpec, scenario: Scenario, position: Array) -> None:
+    """Put two rails, with the middle of their slot at `position` (3,), m, D, on a frame that rests on buffers below the skids.
+
+    Raises:
+        ModelError: buffers that are too stiff for the base rate.
+    """
+    c = scenario.cradle
+    across = 0.5 * c.gap_m + c.radius_m
     half = 0.5 * np.deg2rad(c.heading_deg)
-    body = spec.worldbody.add_body(name="cradle", pos=position, quat=[np.cos(half), 0, 0, np.sin(half)])
+    place = {"pos": position, "quat": [np.cos(half), 0, 0, np.sin(half)]}
+    stand, body = spec.worldbody.add_body(name="stand", **place), spec.worldbody.add_body(name="cradle", **place)
     look = {"type": mujoco.mjtGeom.mjGEOM_CAPSULE, "rgba": [0.45, 0.48, 0.53, 1], "group": 2}
     for i, side in enumerate((-1.0, 1.0)):
-        x, y, z = 0.5 * c.length_m, side * (0.5 * c.gap_m + c.radius_m), -c.radius_m
-        body.add_geom(name=f"rail_{i + 1}", fromto=[-x, y, z, x, y, z], size=[c.radius_m, 0, 0], **look)
+        x, y, z = 0.5 * c.length_m, side * across, -c.radius_m
+        body.add_geom(name=f"rail_{i + 1}", fromto=[-x, y, z, x, y, z], size=[c.radius_m, 0, 0], mass=0, **look)
         for foot in (-0.3, 0.8):
             # Legs stand outside the slot.
             leg = [foot * x, y, z, foot * x, 1.5 * y, -position[2]]
-            body.add_geom(fromto=leg, size=[0.7 * c.radius_m, 0, 0], **look)
+            stand.add_geom(fromto=leg, size=[0.7 * c.radius_m, 0, 0], **look)
+    rest_on_buffers(spec, body, c, modes(c, scenario.skids.x_m, across), scenario.environment.gravity_mps2[2])

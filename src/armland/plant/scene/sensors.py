@@ -11,6 +11,7 @@
 | `plate_pos`, `plate_vel`, `plate_rate` | position, velocity of the middle of the plate's lower face, plate's angular velocity [W] |
 | `magnet_force` | contact force of the face on the plate [W], without the magnet's pull: `xfrc_applied[plate_body]` holds that |
 | `cradle_force`, `ground_force` | contact force of the rails, of the floor on UAV and plate [W] |
+| `plate_cradle_force` | the share of `cradle_force` that bears on the plate [W] |
 | `arm_cradle_force`, `arm_floor_force`, `arm_uav_force` | contact forces of the arm on what it should not touch [W] |
 """
 
@@ -53,6 +54,7 @@ def _add_contact_sensors(spec: mujoco.MjSpec, cradle: bool, magnet: bool) -> Non
     for name, one, on, other, under, fitted in (
         ("magnet_force", body, "armland_tool", body, PLATE, magnet),
         ("cradle_force", body, "cradle", tree, uav, cradle),
+        ("plate_cradle_force", body, "cradle", body, PLATE, cradle),
         ("ground_force", O.mjOBJ_GEOM, "floor", tree, uav, True),
         ("arm_cradle_force", tree, arm.name, body, "cradle", cradle),
         ("arm_floor_force", tree, arm.name, O.mjOBJ_GEOM, "floor", True),

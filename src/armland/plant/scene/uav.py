@@ -27,6 +27,9 @@ ON_UAV = ("hinge_y", "hinge_x", "swivel")
 
 AXES = {"swivel": [0, 0, 1], "hinge_x": [1, 0, 0], "hinge_y": [0, 1, 0]}
 
+STOP_R = 2000.0
+"""rad/s² per N·m, see `set_stops`."""
+
 FRAME_RADIUS_M = 0.015
 """Of the two beams that carry the rotors, as far as they can touch."""
 
@@ -77,6 +80,24 @@ def let_fly(spec: mujoco.MjSpec, uav: mujoco.MjSpec, scenario: Scenario) -> mujo
     _add_skids(body, scenario.skids)
     _hang_plate(body, site(uav, "pivot").pos.copy(), scenario.plate, scenario.hinge, uav.compiler.degree)
     return body
+
+
+def set_stops(model: mujoco.MjModel, hinge: Hinge) -> None:
+    """Give the hinge's stops stiffness k and damping c of their own, in the compiled `model`.
+
+    MuJoCo scales a stop's stiffness with the lighter side's inertia, here the plate's of 6e-6 kg·m²: a UAV would lean through it.
+    The force of a limit's row is −(K q + B v)/(A + R), with the inverse inertia A behind it: 100 rad/s² per N·m for a UAV on a
+    plate that is held, A₀ = 1e5 for a plate that swings freely. R far above the former makes it a spring, K = k R and B = c R;
+    far below the latter it leaves the free plate stable, c R < 1/step. So d = A₀/(A₀ + R). Source: MuJoCo's documentation,
+    "Solver parameters".
+    """
+    for name in ("hinge_x", "hinge_y"):
+        joint = model.joint(f"{UAV}{name}")
+        free = float(model.dof_invweight0[joint.dofadr[0]])
+        d = free / (free + STOP_R)
+        # MuJoCo divides by d² and d what it is given.
+        model.jnt_solref[joint.id] = [-hinge.stop_nm * STOP_R * d * d, -hinge.stop_nms * STOP_R * d]
+        model.jnt_solimp[joint.id] = [d, d, 0.001, 0.5, 2.0]
 
 
 def _add_hinge_joint(body: mujoco.MjsBody, name: str, pos: Array, hinge: Hinge, degree: bool) -> None:

@@ -52,6 +52,10 @@ GROUPS: dict[str, tuple[Row, ...]] = {
 
 LOADS = (
     Row("hinge force max [N]", "hinge_force_max_n", 1.0, "{:.1f}"),
+    Row("magnet's pull max [N]", "magnet_pull_max_n", 1.0, "{:.1f}"),
+    Row("magnet's shear max [N]", "magnet_shear_max_n", 1.0, "{:.1f}"),
+    Row("shear over what the magnet holds [1]", "magnet_shear_max_ratio", 1.0, "{:.2f}"),
+    Row("fall onto something [mm]", "fall_m", 1e3, "{:.1f}"),
     Row("joint torque over limit max [1]", "joint_torque_max_ratio", 1.0, "{:.2f}"),
 )
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from armland.errors import ConfigurationError
-from armland.rotations import angle, conjugate, multiply
 from armland.scenario.faults import FAILURES, SHAPES
 
 
@@ -44,55 +43,9 @@ def test_frozen_camera_keeps_its_clock_and_repeats_its_image(waiting):
     np.testing.assert_array_equal(m["camera_position"], first)
 
 
-@pytest.mark.parametrize(
-    ("device", "field"),
-    [
-        ("encoders", "q"),
-        ("encoders", "qd"),
-        ("wrench", "wrench"),
-        ("attitude", "uav_quat"),
-        ("camera", "camera_position"),
-    ],
-)
-def test_device_that_fails_sends_no_numbers(waiting, device, field):
-    led = waiting(faults=[{"kind": "non_finite", "device": device, "after_s": 0.1}])
-    assert np.isfinite(led.step(90)["measurement"][field][-1]).all()
-    assert np.isnan(led.step(20)["measurement"][field][-1]).all()
-
-
 def test_encoder_that_is_off_shows_in_one_joint(waiting):
     ticks = waiting(faults=[{"kind": "encoder_offset", "joint": 2, "size": 0.1, "after_s": 0.1}]).step(150)[-1]
     np.testing.assert_allclose(ticks["measurement"]["q"] - ticks["truth"]["q"], [0, 0.1, 0, 0, 0, 0, 0], atol=1e-12)
-
-
-def test_reported_attitude_is_turned_once_and_the_uav_is_not(waiting):
-    fault = {"kind": "attitude_offset", "size": 0.5, "direction": [1.0, 0.0, 0.0], "after_s": 0.1}
-    ticks = waiting(faults=[fault]).step(400)[-1]
-    turned = multiply(ticks["measurement"]["uav_quat"].copy(), conjugate(ticks["truth"]["quat"].copy()))
-    assert angle(turned) == pytest.approx(0.5, abs=0.02)
-    assert abs(ticks["truth"]["quat"][0]) > 0.99
-
-
-def test_push_on_the_tool_is_felt_and_on_the_elbow_is_not(waiting):
-    def change(body):
-        led = waiting(faults=[{"kind": "push", "body": body, "size": 20.0, "after_s": 0.3}])
-        return led.step(299)["measurement"]["wrench"][-1, 2], led.step(60)["measurement"]["wrench"][-1, 2]
-
-    before, after = change("tool")
-    assert after - before == pytest.approx(-20.0, abs=2.0)
-    before, after = change("elbow")
-    assert abs(after - before) < 3.0
-
-
-@pytest.mark.parametrize("body", ["elbow", "tool"])
-def test_push_ends_when_the_fault_does(hinged, body):
-    """On the hinge nothing else writes the tool's row."""
-    led = hinged(faults=[{"kind": "push", "body": body, "size": 50.0, "after_s": 0.1, "lasts_s": 0.05}])
-    row = int(led.sim.world["told"]["faults"]["row"]["body"][0, 0])
-    led.step(120)
-    assert np.abs(led.sim.data.xfrc_applied[row]).max() == 50.0
-    led.step(60)
-    assert not led.sim.data.xfrc_applied[row].any()
 
 
 def test_twist_and_overload_act_on_the_uav(waiting):
@@ -144,7 +97,12 @@ def test_fault_that_never_acted_is_known(waiting):
     assert led.sim.acted == (False, False)
 
 
-@pytest.mark.parametrize("kind", FAILURES)
+LARGE = {"link_delay": {"size": 100.0}, "gust": {"size": 5.0, "lasts_s": 1.0}}
+"""What shows within 0.4 s."""
+
+
+# Without a plate on the magnet, what is left of its pull acts on nothing, and an arm at rest reads alike when it is frozen.
+@pytest.mark.parametrize("kind", [kind for kind in FAILURES if kind not in ("magnet_stuck", "encoder_frozen")])
 def test_every_kind_changes_the_run_and_healthy_runs_are_alike(waiting, kind):
     def run(faults):
         led = waiting("cradle" if kind.startswith("magnet") else "air", faults=faults)
@@ -152,6 +110,7 @@ def test_every_kind_changes_the_run_and_healthy_runs_are_alike(waiting, kind):
 
     used = {"size": 0.5} if SHAPES[kind].unit else {}
     used |= {"direction": [0.0, 1.0, 0.0]} if "direction" in SHAPES[kind].keys else {}
+    used |= LARGE.get(kind, {})
     assert run([{"kind": kind, "after_s": 0.02, **used}]) != run([])
     assert run([{"kind": kind, "after_s": 5.0, **used}]) == run([])
 
@@ -167,7 +126,14 @@ def test_fault_of_a_joint_that_is_not_there_is_refused(waiting):
 
 
 @pytest.mark.parametrize(
-    "fault", [{"kind": "magnet_coil"}, {"kind": "camera_lost"}, {"kind": "non_finite", "device": "camera"}]
+    "fault",
+    [
+        {"kind": "magnet_coil"},
+        {"kind": "magnet_stuck"},
+        {"kind": "camera_lost"},
+        {"kind": "wrong_marker"},
+        {"kind": "non_finite", "device": "camera"},
+    ],
 )
 def test_fault_of_a_device_that_is_not_there_is_refused(hinged, fault):
     with pytest.raises(ConfigurationError, match="cannot act: the mission flies without a"):
