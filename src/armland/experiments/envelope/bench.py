@@ -22,6 +22,7 @@ from armland.experiments.snapshot import Run
 from armland.mission.belief import flyer
 from armland.mission.supervisor.table import FAULTS
 from armland.models.capture import GATE_M, Grip
+from armland.plant.scene.closing import RATE
 from armland.plant.scene.gear import PADS
 from armland.plant.scene.uav import PLATE
 from armland.rotations import Array, from_rotation_vector, matrix
@@ -109,9 +110,8 @@ class CaptureBench:
 
     def _grip(self) -> Grip:
         plate, magnet = self.scenario.plate, self.scenario.magnet
-        brake_s = float(self.simulator.scene.model.pair("cushion_1").solref[0])
         pull = magnet.rating_n, magnet.gap_scale_m, magnet.shear_share
-        return Grip(plate.radius_m, magnet.pad_radius_m, plate.drop_m, *pull, brake_s, magnet.reach_m)
+        return Grip(plate.radius_m, magnet.pad_radius_m, plate.drop_m, *pull, 1.0 / RATE, magnet.reach_m)
 
     def capture(self, start: Start) -> Capture:
         """One capture from `start`; the same start gives the same result."""

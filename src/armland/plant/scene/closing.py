@@ -3,7 +3,8 @@
 import numpy as np
 
 RATE = 500.0
-"""1/s, with which skids and rails meet: fast beside the buffers, slow enough for a step of 1 ms."""
+"""1/s, with which skids and rails, and a magnet's face and its plate, meet: fast beside the buffers, slow enough for a step of 1 ms.
+Assumption for the face, where it is 1/T in `models.capture`."""
 
 
 def closing(rate: float, step: float) -> list[float]:

@@ -6,8 +6,9 @@ from armland.plant.scene.closing import RATE, closing
 from armland.plant.scene.eye import HOUSING
 from armland.plant.scene.uav import PLATE, UAV
 
-OPEN_M, HINT_N = 5e-5, 1e-3
-"""Gap at which a skid has left a rail, and the adhesion up to it: too small to hold anything."""
+OPEN_M, HINT_N = 1e-6, 1e-3
+"""Gap at which a skid has left a rail, and the adhesion up to it: too small to hold anything. In the gap a contact has no friction,
+so it is far less than a touchdown travels in a step: skids that closed through it for milliseconds would slide like on ice."""
 
 
 def add_contacts(spec: mujoco.MjSpec, links: list[str]) -> None:
@@ -38,7 +39,7 @@ def _add_pair(spec: mujoco.MjSpec, one: str, other: str, friction: float, bears:
         # What gives way is the cradle, and not this: a load of 20 N presses skid and rail together by 1 µm.
         solref=closing(RATE, spec.option.timestep),
         solimp=[0.999, 0.999, 0.001, 0.5, 2.0],
-        # So hard a contact would open for a step while its load changes. A hint of adhesion keeps it active until it has opened.
+        # So hard a contact opens by 0.1 µm for a step while its load changes. A hint of adhesion keeps it active meanwhile.
         gap=OPEN_M if bears else 0.0,
         adhesion=HINT_N if bears else 0.0,
     )

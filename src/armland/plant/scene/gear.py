@@ -8,6 +8,7 @@ import numpy as np
 
 from armland.errors import ConfigurationError, ModelError
 from armland.plant.scene.arm import add_capsule
+from armland.plant.scene.closing import RATE, closing
 from armland.plant.scene.compliance import modes, rest_on_buffers
 from armland.plant.scene.uav import PLATE
 from armland.rotations import Array
@@ -21,7 +22,7 @@ PAD_RADIUS_M = 0.003
 CUSHION_N = 1e-3
 """Adhesion of a cushion's contact; too small to hold anything."""
 
-CUSHION_BELOW_M = 5e-5
+CUSHION_BELOW_M = 3e-5
 """How far the cushions lie below the pads. They brake without friction: level with the pads they would let a plate that slides,
 which MuJoCo's contact lifts by micrometres, sink back so slowly that it slides on as if on ice."""
 
@@ -83,9 +84,9 @@ def mount_face(body: mujoco.MjsBody, height: float, magnet: Magnet) -> None:
 
 def couple(spec: mujoco.MjSpec, magnet: Magnet) -> None:
     """Let pads and cushions meet the plate, a cylinder whose lower end is the face that is gripped."""
-    # As stiff as a step of 1 ms allows: the rating presses the faces together by less than 1 µm. The last of it is softer: on a
-    # curved path each step opens the contact a little, 0.1 µm at 0.2 m/s, and a harder one would close again with blows.
-    hard = {"solref": [max(0.002, 2.0 * spec.option.timestep), 1.0], "solimp": [0.995, 0.9999, 1e-6, 0.5, 2.0]}
+    # Hard: the rating presses the faces together by less than 1 µm. The last of it is softer: on a curved path each step opens
+    # the contact a little, 0.1 µm at 0.2 m/s, and a harder one would close again with blows.
+    hard = {"solref": closing(RATE, spec.option.timestep), "solimp": [0.995, 0.9999, 1e-6, 0.5, 2.0]}
     friction = [magnet.shear_share, magnet.shear_share, 0.0, 0.0, 0.0]
     for i in range(PADS):
         pad = {"name": f"magnet_{i + 1}", "geomname1": f"pad_{i + 1}", "geomname2": PLATE}
