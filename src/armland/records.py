@@ -81,6 +81,11 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("tau_att", (3,), "N·m", "B", "torque of the onboard attitude controller, as the ground predicts it"),
         Field("arm_share", (), "1", "-", "share of the weight on the arm"),
         Field("ground_share", (), "1", "-", "share of the weight on cradle or ground"),
+        Field("camera_noise", (), "1", "-", "standard deviation of the camera over the one that it claims, as learnt"),
+        Field("uplink", (), "s", "-", "delay of commands to the UAV, as its echoes say"),
+        Field("downlink", (), "s", "-", "delay of its samples, as their stamps say"),
+        Field("weight", (), "N", "-", "weight of all that flies, as the force-torque sensor finds it"),
+        Field("hover", (), "N", "-", "thrust command that carries the weight, as learnt"),
     ),
     "mission": (
         TICK,
@@ -106,6 +111,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("uav_quat", (4,), "1", "UAV's W<-B", "attitude set-point, scalar first"),
         Field("delta_tau", (3,), "N·m", "B", "torque Δτ_att asked of the UAV beyond its attitude controller"),
         Field("thrust", (), "N", "B", "total thrust f_T asked of the UAV"),
+        Field("uav_step", (3,), "m", "UAV's W", "from where it began to hover by itself to where it shall hover"),
         Field("force", (3,), "N", "D", "force F_EE that the law wants the end effector to put on the UAV"),
         Field("torque", (3,), "N·m", "D", "orientation torque of the end effector"),
     ),
@@ -208,7 +214,7 @@ class UavMode:
     """What the UAV makes of thrust and attitude set-point."""
 
     AUTONOMOUS = 0
-    """Hovers where it is by its own means; the set-points are ignored."""
+    """Hovers by its own means, `uav_step` from where it was when it began; the set-points are ignored."""
     GUIDED = 1
     """Flies by the set-points; if the link is lost it hovers by its own means."""
     HELD = 2

@@ -45,6 +45,15 @@ def test_uav_stays_on_the_arm_whichever_rotor_is_lost(phase, rotor):
     check_held(lose(phase, rotor), state="standing" if phase == "lift" else "held")
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [101, 102, 103, 104, 105, 106])
+def test_uav_is_balanced_in_wind_with_a_biased_attitude(seed):
+    fault = {"kind": "rotor_loss", "phase": "carry", "after_s": 0.05}
+    scenario = load_scenario("landing", {"faults": [fault], "deviation": {"level": "published"}})
+    j = fly(scenario, "landing", seed).judgement
+    assert (j.fault, j.end, j.state, j.limits_violated) == ("rotor_lost", "balancing", "held", [])
+
+
 def test_leans_on_the_hinges_stops_without_balancing(monkeypatch):
     # The same end, but the arm holds still.
     mission = MISSIONS["landing"]
@@ -76,7 +85,7 @@ def test_uav_near_the_rails_is_set_down(phase, after_s, rotor):
 @pytest.mark.parametrize("rotor", [1, 3])
 def test_without_the_uavs_word_a_lost_rotor_is_a_lean_like_another(rotor):
     j = lose("carry", rotor, onboard={"rotor_watch": 0.0}).judgement
-    assert (j.fault, j.state) == ("uav_tilt", "standing")
+    assert (j.fault, j.state) == ("uav_tilt", "held")
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from armland.mission.estimate import (
     learn_uplink,
     predict_torque,
     screen,
+    watch_downlink,
 )
 from armland.mission.reference.moves import LAUNCH
 from armland.rotations import from_rotation_vector
@@ -184,3 +185,16 @@ def test_thrust_acts_after_the_delay_that_was_learnt(bench):
     s["thrust_log"][0, 2000 % 256] = 1.0
     assert acting_thrust(2099, p[0], s[0]) == 0.0
     assert acting_thrust(2100, p[0], s[0]) > 0.0
+
+
+@pytest.mark.parametrize("late", [12, 100, 400])
+def test_delay_of_the_downlink_is_learnt_from_the_stamps(bench, late):
+    """And when the newest sample came: one that is seen again is no new one."""
+    p, s, m = bench.told["estimate"], bench.kept["estimate"], bench.m
+    for tick in range(1000, 5000):
+        m["tick"], m["uav_tick"] = tick, (tick - late) // 5 * 5
+        watch_downlink(m[0], p[0], s[0])
+    m["tick"] = 6000
+    watch_downlink(m[0], p[0], s[0])
+    assert s["downlink"][0] == pytest.approx(late, abs=5.0)
+    assert s["arrived"][0] in range(4995, 5000)

@@ -38,7 +38,7 @@ def test_masses_are_those_of_file_plate_and_load():
 
 def test_limits_of_the_supervisor_are_the_scenarios():
     t = told({"limits": {"torque_rate_nm_s": 777.0, "slip_m": 0.02, "unexplained_n": 4.0, "uav_age_ms": 111.0}})
-    assert t["limit"]["torque_rate"][0] == 777.0
+    np.testing.assert_array_equal(t["limit"]["torque_rate"][0], [777.0] * 7)
     assert t["estimate"]["slip"][0] == 0.02
     assert t["decide"]["watch"]["unexplained"][0] == 4.0
     assert t["decide"]["watch"]["uav_age"][0] == t["limit"]["uav_age"][0] == 111
@@ -61,7 +61,7 @@ def test_experiment_lasts_as_long_as_its_path_and_limits_the_torque_alone(name):
     made = plan(load_scenario("paper"), name)
     assert made.ticks == len(made.path) == 14500
     p = made.told["limit"]
-    assert np.isinf([p["torque_rate"][0], p["speed_share"][0], p["hinge_max"][0], -p["joint_margin"][0]]).all()
+    assert np.isinf([*p["torque_rate"][0], p["speed_share"][0], p["hinge_max"][0], -p["joint_margin"][0]]).all()
     assert np.isfinite(p["tau_max"]).all()
     assert made.names == ("settle", "follow", "rest", "done", "resting")
     assert made.told["estimate"]["fused"][0] == 0

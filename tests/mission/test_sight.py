@@ -75,6 +75,27 @@ def test_plate_is_far_off_only_beyond_what_the_cameras_noise_explains(bench, noi
     assert s["grip_far"][0] == far
 
 
+@pytest.mark.parametrize(
+    ("offsets", "slides"),
+    [
+        ([15.0, 30.0], 2),
+        ([15.0, 30.0, 50.0], 3),
+        ([30.0, 15.0], 1),  # one that comes back
+        ([15.0, -30.0], 1),  # scatter has no direction
+        ([15.0, 30.0, 2.0], 0),
+        ([2.0, 4.0, 8.0], 0),  # not yet off
+    ],
+)
+def test_images_that_show_a_plate_ever_further_the_same_way_are_counted(bench, offsets, slides):
+    """Each by itself: what is smoothed lags by more than a plate that is shoved off stays in view."""
+    s = bench.kept["estimate"]
+    bench.m["camera_sigma"][0, :3], s["filter"]["noise"] = 5e-4, 1.0
+    for offset in offsets:
+        see(bench, np.array([1e-3 * offset, 0.0, 0.0]), LEVEL, LEVEL)
+        look_at_grip(bench.m[0], bench.told["estimate"][0], s[0])
+    assert s["grip_slides"][0] == slides
+
+
 def test_tick_without_an_image_says_nothing_of_the_grip(bench):
     s = bench.kept["estimate"]
     s["grip_offset"], s["grip_tick"] = 0.002, 5

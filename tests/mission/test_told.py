@@ -77,8 +77,9 @@ def test_free_arm_has_the_poles_that_are_wanted(told, landing_plan):
 def test_limits_are_the_arms_and_the_scenarios(told, landing_plan):
     p, arm, limits = told["limit"][0], landing_plan.arm, landing_plan.scenario.limits
     np.testing.assert_array_equal([p["q_min"], p["q_max"], p["tau_max"]], [arm.q_min, arm.q_max, arm.tau_max])
-    np.testing.assert_array_equal(p["qd_max"], landing_plan.scenario.arm.joint_speed_rad_s)
-    assert (p["joint_margin"], p["speed_share"], p["torque_rate"]) == (0.02, 0.9, 1500.0)
+    np.testing.assert_array_equal(p["qd_max"], [1.92, 1.92, 2.23, 2.23, 2.27, 3.14, 3.14])
+    assert (p["joint_margin"], p["speed_share"]) == (0.02, 0.9)
+    np.testing.assert_array_equal(p["torque_rate"], [1500.0] * 7)
     assert p["hinge_max"] == pytest.approx(limits.hinge_force_share * landing_plan.scenario.magnet.rating_n)
     assert p["uav_age"] == 250
 
@@ -106,7 +107,7 @@ def telling(made, overrides=None, launch=None, start="cradle"):
     """What a plan was told from, with another scenario and with a run-up that nobody had to search for."""
     scenario = load_scenario("landing", overrides)
     return Telling(
-        scenario, made.arm, flyer(scenario), np.array(scenario.arm.joint_speed_rad_s), UPRIGHT, np.zeros((0, 3)),
+        scenario, made.arm, flyer(scenario), made.arm.qd_max, UPRIGHT, np.zeros((0, 3)),
         Experiment(acceleration="implied", support="none"), row_of("exact"), start, launch,
     )  # fmt: skip
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from armland.mission.reference.guided import CAUGHT_S, SHORT_N
 from armland.mission.table.phases import LINK, UAV
-from armland.mission.uav import LEANT_MPS2, command_uav
+from armland.mission.uav import LEANT_MPS2, RECKONED_S, command_uav
 from armland.records import UavMode
 from armland.rotations import from_rotation_vector, matrix, multiply
 
@@ -68,14 +69,35 @@ def test_uav_that_nobody_vouches_for_hovers_by_itself(bench):
     assert bench.c["uav_mode"][0] == UavMode.GUIDED
 
 
+def test_uav_that_has_left_the_view_is_told_where_to_hover_in_its_own_axes(bench):
+    """It believes a heading of 90 degrees less than it has: what lies along deck x lies along its own −y."""
+    align = from_rotation_vector(np.array([0.0, 0.0, 0.5 * np.pi]))
+    bench.e["plate"][0] = np.array(bench.plan.scenario.place.catch_m) - [0.2, 0.0, 0.0]
+    bench.e["plate_age"], bench.e["r"][0, 2] = 0.99 * RECKONED_S, 0.6
+    ask(bench, "guide", align=align)
+    assert bench.c["uav_mode"][0] == UavMode.GUIDED
+    np.testing.assert_array_equal(bench.c["uav_step"], 0.0)
+    bench.e["plate_age"] = 1.01 * RECKONED_S
+    ask(bench, "guide", align=align)
+    assert bench.c["uav_mode"][0] == UavMode.AUTONOMOUS
+    np.testing.assert_allclose(bench.c["uav_step"][0, :2], [0.0, -0.2], atol=1e-12)
+    # In an end it stays where it was sent; found again it is guided.
+    step = bench.c["uav_step"].copy()
+    ask(bench, "abort", align=align)
+    np.testing.assert_array_equal(bench.c["uav_step"], step)
+    bench.e["plate_age"] = 0.0
+    ask(bench, "guide", align=align)
+    np.testing.assert_array_equal(bench.c["uav_step"], 0.0)
+
+
 def at_station(bench, away=(0.0, 0.0, 0.0), lean=(0.0, 0.0, 0.0), rate=(0.0, 0.0, 0.0)):
-    """A UAV `away` from its station, leaning and turning about its centre of mass, which is at rest."""
+    """A UAV `away` from its station, leaning and turning about its centre of mass, which is at rest; the arm waits below."""
     p = bench.told["act"]["uav"]
     R, lever = matrix(from_rotation_vector(np.array(lean))), p["lever"][0]
     bench.e["quat"][0], bench.e["omega"] = from_rotation_vector(np.array(lean)), rate
     cm = p["station"][0] - lever + away
     bench.e["plate"], bench.e["plate_v"] = cm + R @ lever, R @ np.cross(rate, lever)
-    bench.m["tick"] = 1000
+    bench.m["tick"], bench.e["r"][0, 2] = 1000, 0.62
 
 
 def test_uav_at_its_station_is_asked_to_hover_there(bench):
@@ -510,3 +532,53 @@ def test_hinge_is_freed_of_sideways_force_by_leaning_along_it(bench, force):
     axis = axis_of(bench)
     np.testing.assert_allclose(axis[:2] / axis[2] * 9.81, wanted, rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(bench.kept["act"]["integral"][0, :2], wanted, rtol=1e-9, atol=1e-12)
+
+
+def caught(bench, loss, seconds, zero=0.0, bias=0.0):
+    """A UAV on the magnet whose rotors give less by `loss`, the force sensor off by `zero`, N; returns the hover thrust learnt, N."""
+    kept, weight = bench.kept["act"], bench.told["act"]["uav"]["weight"][0]
+    kept["hover"] = kept["thrust"] = weight
+    bench.kept["estimate"]["weight"], bench.kept["decide"]["begin"] = weight, bench.m["tick"][0]
+    bench.kept["estimate"]["plate"]["bias"][0, 2] = bias
+    for _ in range(round(1e3 * seconds)):
+        bench.e["thrust"] = kept["thrust"]
+        bench.e["hinge_force"][0, 2] = weight - (1.0 - loss) * kept["thrust"][0] + zero
+        ask(bench, "capture")
+    return float(kept["hover"][0])
+
+
+@pytest.mark.parametrize("loss", [0.1, 0.15, 0.3])
+def test_thrust_that_is_missing_is_felt_by_the_arm_below_a_caught_uav(bench, loss):
+    """T_h = W / (1 − loss): then the pull of the rotors can be tested, and a UAV that is let go keeps its height."""
+    weight = bench.told["act"]["uav"]["weight"][0]
+    assert caught(bench, loss, CAUGHT_S + 1.2) == pytest.approx(weight / (1.0 - loss), rel=0.01)
+    assert bench.kept["act"]["integral"][0, 2] == pytest.approx(
+        (bench.kept["act"]["hover"][0] - weight) / bench.told["act"]["uav"]["mass"][0], rel=1e-3
+    )
+
+
+@pytest.mark.parametrize("zero", [-0.5, 0.2])
+def test_healthy_uav_is_not_thought_weak_by_a_drifting_sensor(bench, zero):
+    weight = bench.told["act"]["uav"]["weight"][0]
+    assert abs(zero) < SHORT_N or zero < 0.0
+    assert caught(bench, 0.0, CAUGHT_S + 1.2, zero) == weight
+
+
+def test_what_the_filter_saw_before_the_catch_counts_at_once(bench):
+    weight, mass = (bench.told["act"]["uav"][name][0] for name in ("weight", "mass"))
+    assert caught(bench, 0.0, 0.001, bias=-1.0) == pytest.approx(weight + mass)
+    bench.kept["act"]["integral"] = 0.0
+    assert caught(bench, 0.0, 0.001, bias=-0.3) == weight
+
+
+def test_what_a_drifting_sensor_says_is_forgotten_at_the_let_go(bench):
+    """Its zero never comes to rest, so what is learnt of it never does."""
+    weight = bench.told["act"]["uav"]["weight"][0]
+    caught(bench, 0.0, CAUGHT_S)
+    for k in range(1200):
+        kept = bench.kept["act"]
+        bench.e["thrust"], bench.e["hinge_force"][0, 2] = kept["thrust"], weight - kept["thrust"][0] + 6e-3 * k
+        ask(bench, "capture")
+    assert kept["hover"][0] > 1.2 * weight
+    ask(bench, "miss")
+    assert kept["hover"][0] == pytest.approx(weight, rel=0.03)

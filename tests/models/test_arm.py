@@ -6,9 +6,10 @@ import pinocchio as pin
 import pytest
 
 from armland.models.arm import ArmModel
+from armland.models.arm_file.reading import read_arm
+from armland.models.arm_file.table import Asked
 from armland.models.description import mark_end_effector, read_spec
 from armland.models.operational import PIVOT_THRESHOLD
-from armland.models.parameters import apply_default_armature
 from armland.rotations import from_rotation_vector, matrix
 
 STEP = 1e-5
@@ -72,7 +73,9 @@ def test_arm_reads_ranges_and_torque_limits(bench):
     np.testing.assert_allclose(arm.q_max, [1.5 + 0.1 * i for i in moving])
     np.testing.assert_allclose(arm.tau_max, [50.0 + i for i in moving])
     endless = bench("slide and endless joint").arm
-    assert np.isinf([endless.q_min[2], endless.q_max[2], endless.tau_max[2]]).all()
+    # What the file does not name is neither zero nor infinite.
+    np.testing.assert_allclose([endless.q_min[2], endless.q_max[2]], [-2.0 * np.pi, 2.0 * np.pi])
+    assert 50.0 < endless.tau_max[2] < 1000.0
 
 
 def test_eq1_mass_matrix_is_symmetric_and_positive_definite(bench, arm_name, states):
@@ -234,10 +237,10 @@ def test_coriolis_wrench_leaves_the_model_as_it_was(bench, states):
 
 
 def test_default_armature_adds_to_the_mass_matrix_where_there_is_none(bench, states):
-    spec = read_spec(bench("six joints").path)
-    mark_end_effector(spec, "tip", None)
+    file = read_arm(bench("six joints").path, Asked("tip", armature=0.1))
+    spec = file.spec()
+    mark_end_effector(spec, file.frame, None)
     spec.joints[2].armature = 0.03
-    apply_default_armature(spec, 0.1)
     arm, bare = ArmModel(spec), bench("six joints").arm
     q, qd = next(states(bare, 1))
     arm.update(q, qd)

@@ -6,6 +6,7 @@ from armland.mission.supervisor.faults import LOAD_LEFT, SEEN_S
 from armland.mission.supervisor.remedies import REMEDIES, STANDING
 from armland.mission.supervisor.table import DEBOUNCE_S, ESCALATION, FAULT_TABLE, FAULTS, GRAVITY_OF
 from armland.mission.table.phases import KINDS
+from armland.mission.told import LATE_S, LATER_S
 from armland.scenario.faults import Fault
 from armland.scenario.mission import Limits
 from pages.flights import Flight
@@ -45,13 +46,28 @@ _NOTES = """\
 - **A lean is no fault while the UAV is held**: a gust, a blow and a push make a healthy one lean. What it says of its motors counts.
 - **A UAV without power is silent too.** Held, the hinge bears all its weight at once; it leans on the hinge's stops and stays there. In
   flight it falls.
-- **A plate that sticks in the air pulls less than the UAV's thrust exceeds its weight**, too little to be felt: that it follows the arm
-  down is what shows. So does a UAV that has lost a quarter of its thrust while it hung on the arm; it is held again.
-- **Images that scatter by six times what is claimed** are mostly found as a leap: both make the filter begin anew.
+- **A plate that sticks in the air pulls with what the UAV's thrust exceeds its weight**: it follows the arm down. So does a UAV that
+  has lost a quarter of its thrust while it hung on the arm; the force at the hinge tells them apart, and both are held again.
+- **Images that scatter are told from a marker that leaps** by whether they agree with each other: noise is learnt from the
+  differences of consecutive innovations, of place and of attitude, and a leap is one that comes time and again at the same place.
+- **A loss of thrust that the rotors can make up for is learnt**, by the ground's station keeping in flight and by the arm's force on
+  the magnet. 15 % cost 0.15 m of height before they are made up for; where arm and UAV are near each other they may touch meanwhile.
+  30 % of the thrust leave less than the weight: on the magnet such a UAV is held; in flight it falls, and nothing on the ground can
+  hold it.
+- **A force sensor that breaks in flight** reads another tool at once: the tool weighs 2.9 N, and a bridge that is dead, reversed or at
+  half or twice its gain reads 1.5 to 5.9 N more or less than before, straight down, though nothing touches the arm. While the arm
+  carries, a dead one reads nothing at all; a reversed or badly scaled one only contradicts load and thrust, which a UAV that does not
+  obey does as well: the reason says by how much.
+- **A link that slows down is told from one that is silent** by the stamps of the samples that still come.
+- **An encoder that drifts is not found as such.** Camera and arm move together, so the UAV is still caught. What is wrong is where the
+  arm is on the deck. The one thing that shows it is the UAV's attitude seen through the arm, which turns against the one that it
+  reports; at 0.02 rad/s in the second joint that turn is as large as an image's noise after three seconds, when the arm is 4 cm off
+  already, and a joint about the vertical turns like a heading that drifts. What protects is contact: the force of the rails is felt,
+  limited, and ends the mission, with reasons that say what was felt and not the encoder.
 - **A force sensor that falls below what is expected while three images in a row are missing** passes for a load that is gone: the UAV
   is let go, flying.
-- **A UAV that is shoved off a dead magnet while its rotors still carry it** leaves the camera's view before three images show it, and
-  so little load is expected then that its absence says nothing: it is lost.
+- **A UAV that is shoved off a dead magnet while its rotors still carry it** leaves the camera's view before three smoothed images show
+  it. The last two by themselves, ever further the same way, and nothing felt, say it as well.
 - **Brakes stop an arm that was struck within milliseconds**, hard enough for the plate to slide by 13 mm on the face (shear is a fifth
   of the pull); that slip is seen and the UAV let go, flying.
 """
@@ -102,17 +118,24 @@ def signs() -> dict[str, str]:
         "never with a silent UAV",
         "camera_noise": f"variance of the images above {sign.NOISY:g} times what the camera claims",
         "wrench_wrong": f"force over the tool's inertia force outside {sign.WEIGHED[0]:g} to {sign.WEIGHED[1]:g} on any axis, "
-        f"{sign.WEIGHED_S:g} s into the self-test's nod",
+        f"{sign.WEIGHED_S:g} s into the self-test's nod; or, on an arm that touches nothing and follows its reference, a vertical "
+        f"force that leaps by {sign.ALIVE_N:g} of the tool's weight; or a reading of nothing, not even of the tool",
+        "link_late": f"samples come, and say that commands came, but both ways together more than {1e3 * LATE_S:g} ms late (or "
+        f"{1e3 * LATER_S:g} ms more than the scenario says), or one way more than {v.uav_age_ms:g} ms",
+        "thrust_short": f"as `magnet_stuck`, after {1e3 * sign.SANK_M:g} mm, and the hinge force says that the rotors give less "
+        f"than asked by {sign.SHORT:g} of the weight",
         "magnet_stuck": f"the magnet off for {sign.STUCK_S:g} s and the arm drawing back: above "
         f"{sign.STUCK_N:g} N {1e3 * sign.STUCK_M:g} mm away, "
-        f"or the plate within {1e3 * sign.TOUCHES_M:g} mm after {1e3 * sign.FOLLOWED_M:g} mm",
+        f"or the plate within {1e3 * sign.TOUCHES_M:g} mm after {1e3 * sign.FOLLOWED_M:g} mm, "
+        "pulling with what the thrust exceeds the weight",
         "arm_blocked": f"end effector more than {1e3 * sign.BLOCKED_M:g} mm off its reference",
-        "thrust_lost": f"sinking at more than {sign.SINKS_MPS:g} m/s with {sign.STRAINS:g} times the hover thrust "
-        "or all of it; "
-        "or a UAV that hovers by itself near all that its rotors give",
+        "thrust_lost": f"sinking at more than {sign.SINKS_MPS:g} m/s with all the thrust, or at more than {sign.PLUNGES_MPS:g} m/s "
+        f"with {sign.STRAINS:g} times the hover thrust; or a UAV that needs nearly all that its rotors give, by itself or as the "
+        "arm feels it on the magnet",
         "arm_stale": f"joint sample older than {v.arm_age_ms:g} ms",
         "uav_silent": f"sample of the UAV, or the command that it had heard by then, older than {v.uav_age_ms:g} ms",
-        "camera_stale": f"newest fused image older than {v.camera_age_ms:g} ms, once there was one",
+        "camera_stale": f"newest fused image older than {v.camera_age_ms:g} ms, once there was one; "
+        f"{v.search_ms:g} ms in `guide`, `miss` and `clear`, where the UAV is looked for",
         "wrench_stale": f"force sample older than {v.wrench_age_ms:g} ms",
         "wrench_drift": f"vertical hinge force {v.unexplained_n:g} N off what load and thrust explain, where they do",
         "magnet_coil": f"coil current below what {v.magnet_share:g} of the rated pull needs, 0.15 s after it was switched on",
@@ -122,7 +145,8 @@ def signs() -> dict[str, str]:
         "uav_tilt": f"tilt above {v.tilt_deg:g}°",
         "slip": f"plate more than {1e3 * v.slip_m:g} mm off in three smoothed images in a row; "
         f"without an image of the last {1e3 * SEEN_S:g} ms, less than {LOAD_LEFT:g} of an expected load "
-        f"above {v.load_gone_n:g} N; never with a silent UAV",
+        f"above {v.load_gone_n:g} N, or two images before that which show it far off, ever further the same way, and nothing felt; "
+        "never with a silent UAV",
         "near_limit": f"joint within {v.joint_margin_rad:g} rad of its end, singular value below {v.sigma_min:g}, or joint speed "
         f"above {v.joint_speed_share:g} of its limit",
         "law_failed": "the law in use, a user's own, raised an exception or returned a number that is not finite",

@@ -19,7 +19,8 @@ from pages.trials import Trial
 SEED = 1
 
 REST_M, BALANCED_M = 0.002, 0.010
-"""Displacement of the end effector in the last half second in which it counts as at rest; in which it balances a UAV."""
+"""Displacement of the end effector in the last half second in which it counts as at rest; in which it balances a UAV in still air.
+In gusts it goes with them, within its reach."""
 
 
 class Flight(NamedTuple):
@@ -92,14 +93,15 @@ class Branches:
 
 
 @cache
-def branches(mission: str) -> Branches:
-    """The mission without faults."""
-    return Branches(load_scenario("landing").with_seed(SEED), mission)
+def branches(mission: str, seed: int = SEED, level: str = "nominal") -> Branches:
+    """The mission without faults, its plant at a level of deviations."""
+    scenario = load_scenario("landing", {"deviation": {"level": level}, "run": {"seed": seed}})
+    return Branches(scenario, mission)
 
 
-def fly_trial(trial: Trial, blind_to: tuple[str, ...] = ()) -> Flight:
-    """Fly a trial; `blind_to` switches off the supervisor's eye for those faults."""
-    base = branches(trial.mission)
+def fly_trial(trial: Trial, blind_to: tuple[str, ...] = (), base: Branches | None = None) -> Flight:
+    """Fly a trial; `blind_to` switches off the supervisor's eye for those faults; `base` if absent the nominal mission."""
+    base = base or branches(trial.mission)
     ticks, judgement = base.fly(trial.faults, blind_to)
     first, last = (
         base.begins[str(f.phase)] + round(f.after_s * base.rate) for f in (trial.faults[0], trial.faults[-1])
@@ -124,12 +126,13 @@ def fly_trial(trial: Trial, blind_to: tuple[str, ...] = ()) -> Flight:
     )
 
 
-def unsafe(flight: Flight) -> list[str]:
-    """What a trial must not show, in words; empty where all is well."""
-    base, ticks = branches(flight.trial.mission), flight.ticks
+def unsafe(flight: Flight, base: Branches | None = None) -> list[str]:
+    """What a trial must not show, in words; empty where all is well. `base` as in `fly_trial`."""
+    base, ticks = base or branches(flight.trial.mission), flight.ticks
     late, end = ticks[-base.rate // 2 :], base.phases[int(ticks["mission"]["phase"][-1])]
     tau, limits, magnet = ticks["command"]["tau"], base.brief.limits, late["command"]["magnet"]
-    rest = BALANCED_M if end.arm == "balance" else REST_M
+    still = base.run.scenario.deviation.level == "nominal"
+    rest = REST_M if end.arm != "balance" else BALANCED_M if still else base.run.scenario.limits.balance_reach_m
     jump = 1.001 * limits["torque_rate"] / base.rate
     shown = {
         "a command is not a finite number": not (
@@ -138,7 +141,7 @@ def unsafe(flight: Flight) -> list[str]:
         f"the UAV fell or is out of control ({flight.sink_mps:.2f} m/s downwards)": flight.judgement.state == "lost"
         or flight.sink_mps > FALL_MPS,
         "a joint torque beyond its limit": (np.abs(tau) > limits["tau_max"] * (1.0 + 1e-9)).any(),
-        "a joint torque jumped": np.abs(np.diff(tau[1:], axis=0)).max() > jump,
+        "a joint torque jumped": (np.abs(np.diff(tau[1:], axis=0)) > jump).any(),
         "the arm does not come to rest": np.ptp(late["truth"]["ee"], axis=0).max() > rest,
         "the arm has no torque": (np.abs(late["command"]["tau"]).max(axis=1) < 1.0).any(),
         "the brakes are not on": end.arm == "brake" and not late["command"]["brake"].all(),

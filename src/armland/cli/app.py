@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 import typer
 
 from armland import __version__
+from armland.cli.commands.arm import arm
 from armland.cli.commands.detector import detector
 from armland.cli.commands.gains import gains
 from armland.cli.commands.logs import log, report
@@ -38,7 +39,21 @@ def root(
     """Land a UAV with a robot arm."""
 
 
-for command in (land, takeoff, run, paper, report, log, verify, gains, envelope, margins, takeoff_weight, detector):
+for command in (
+    land,
+    takeoff,
+    run,
+    paper,
+    report,
+    log,
+    arm,
+    verify,
+    gains,
+    envelope,
+    margins,
+    takeoff_weight,
+    detector,
+):
     app.command(epilog=vars(command)["epilog"])(command)
 
 

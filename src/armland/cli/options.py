@@ -86,6 +86,22 @@ SETTINGS = option(
     metavar="KEY=VALUE",
 )
 
+OF_ARM = {
+    "ee": option(
+        str | None,
+        "Link, body or site of the arm that carries the tool, z outwards; FRAME:x where x points outwards. Chosen if absent.",
+        "--ee",
+        metavar="FRAME[:AXIS]",
+    ),
+    "lock": option(
+        list[str] | None, "Let a joint stand still: NAME=VALUE, rad or m. Repeatable.", "--lock", metavar="NAME=VALUE"
+    ),
+    "torque_limits": option(
+        str | None, "Torque limit of each joint, N·m, by commas, where the file has none or others."
+    ),
+}
+"""Options that say more about an arm than its file."""
+
 DEVIATION = option(
     Level | None,
     "How far the plant differs from what the controller believes: nominal, mild (half the published ranges), published, harsh "
@@ -93,11 +109,21 @@ DEVIATION = option(
     metavar="LEVEL",
 )
 
+ARM = {
+    "arm": option(
+        str | None,
+        "Another serial arm: URDF or MJCF file, or a name that mujoco-menagerie or robot_descriptions has. Its pose at the start is "
+        "searched for.",
+        metavar="FILE|NAME",
+    ),
+    **OF_ARM,
+}
+"""Options that say which arm, and what of it."""
+
 MADE = {
     "seed": SEED,
     "settings": SETTINGS,
-    "arm": option(Path | None, "Another serial arm: URDF or MJCF file. Its pose at the start is searched for."),
-    "ee": option(str | None, "Link, body or site of the arm that carries the tool, z outwards.", "--ee"),
+    **ARM,
 }
 """Options that a scenario is made by, see `load`."""
 
@@ -129,6 +155,32 @@ def taken(epilog: str, **parameters: Parameter) -> Callable[[Callable[..., None]
     return give
 
 
+def arm_settings(given: dict[str, Any]) -> dict[str, Any]:
+    """The keys of `[arm]` that the options of `OF_ARM` set.
+
+    Raises:
+        ConfigurationError: a `--lock` or `--torque-limits` that cannot be read.
+    """
+    out: dict[str, Any] = {} if given.get("ee") is None else {"ee": given["ee"]}
+    for text in given.get("lock") or []:
+        name, equals, value = text.rpartition("=")
+        try:
+            out.setdefault("lock", {})[name.strip()] = float(value)
+        except ValueError:
+            equals = ""
+        if not equals or not name.strip():
+            raise ConfigurationError(f"--lock {text!r}: expected NAME=VALUE, rad or m, e.g. rail=0.2")
+    limits = given.get("torque_limits")
+    if limits is not None:
+        try:
+            out["torque_limits_nm"] = [float(x) for x in limits.replace(",", " ").split()]
+        except ValueError as e:
+            raise ConfigurationError(
+                f"--torque-limits {limits!r}: expected numbers by commas, e.g. 87,87,87,87,12,12,12"
+            ) from e
+    return out
+
+
 def load(name: str, given: dict[str, Any], hinged: bool = False) -> "Scenario":
     """The scenario `name` with what the command line replaces.
 
@@ -145,15 +197,16 @@ def load(name: str, given: dict[str, Any], hinged: bool = False) -> "Scenario":
     from armland.scenario.tables import update
 
     overrides: dict[str, Any] = {}
-    arm, ee, seed = given.get("arm"), given.get("ee"), given.get("seed")
+    arm, seed = given.get("arm"), given.get("seed")
     if arm is not None:
-        if not arm.is_file():
-            raise ConfigurationError(f"--arm {str(arm)!r}: there is no such file")
-        part = {"file": str(arm.resolve()), "ee": ee or "flange", "elbow_joint": None, "home_rad": None}
+        from armland.models.arm_file.names import arm_path
+
+        other: dict[str, Any] = dict.fromkeys(("ee", "elbow_joint", "home_rad"))
         # Where the LWR stands says nothing about where another arm should.
-        overrides = {"arm": part, **({"trajectory": {"start_m": None}} if hinged else {"place": {"home_deg": None}})}
-    elif ee is not None:
-        overrides = {"arm": {"ee": ee}}
+        where = {"trajectory": {"start_m": None}} if hinged else {"place": {"home_deg": None}}
+        overrides = {"arm": other | {"file": str(arm_path(arm))}, **where}
+    if changed := arm_settings(given):
+        update(overrides, {"arm": changed})
     if given.get("deviation") is not None:
         update(overrides, {"deviation": {"level": given["deviation"]}})
     update(overrides, parse_settings(given.get("settings") or []))

@@ -8,10 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from armland.errors import WorkspaceError
 from armland.experiments.judge.brief import Brief, brief_of, metadata_of
 from armland.experiments.judge.judgement import Judgement, check_kind, judge
+from armland.experiments.placing import placed
 from armland.mission.controller import Controller
 from armland.mission.plan import Plan, plan
+from armland.mission.registry import mission_named
 from armland.mission.tuning import fitted
 from armland.plant.simulator import Simulator
 from armland.plant.start import check_start
@@ -33,6 +36,7 @@ class Flight(NamedTuple):
     simulator: Simulator
     controller: Controller
     metadata: dict[str, str]  # For the log: what the judge, a report or a figure needs to know beside the ticks
+    moved: str = ""  # Where catch and cradle were put, and why, if they are not where the scenario wanted them
 
     @property
     def period_ns(self) -> int:
@@ -77,6 +81,21 @@ def prepare(
     """
     if seed is not None:
         scenario = scenario.with_seed(seed)
+
+    def make(one: Scenario) -> Flight:
+        return _prepared(one, mission, law, experiment, trial)
+
+    try:
+        return make(scenario)
+    except WorkspaceError as refusal:
+        value = mission_named(mission)
+        if value.start == "hinged":
+            raise
+        flight, moved = placed(scenario, value, refusal, make)
+        return flight._replace(moved=moved)
+
+
+def _prepared(scenario: Scenario, mission: str, law: str | None, experiment: str | None, trial: bool) -> Flight:
     made = plan(scenario, mission, law=law, experiment=experiment, trial=trial)
     check_kind(made.mission)
     if made.experiment is not None:
@@ -120,7 +139,7 @@ def fly(
 
 def fly_prepared(flight: Flight, log: Path | None = None, progress: Progress | None = None) -> Episode:
     """Fly what was prepared and judge it; arguments and errors as for `fly`."""
-    scenario, made, simulator, controller, metadata = flight
+    scenario, made, simulator, controller, metadata, _ = flight
     period = flight.period_ns
     with Recorder(log, made.joints, period, metadata, scenario=scenario.text, keep_in_memory=True) as recorder:
         wall = loops.fly(simulator, controller, made, recorder, progress)

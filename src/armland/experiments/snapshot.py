@@ -39,7 +39,7 @@ class Run:
     """
 
     def __init__(self, flight: Flight) -> None:
-        self.scenario, self.plan, self.simulator, self.controller, self.metadata = flight
+        self.scenario, self.plan, self.simulator, self.controller, self.metadata, _ = flight
         self.tick, self.rate = self.controller.tick, self.scenario.run.rate_hz
         self.simulator.connect()
 

@@ -61,7 +61,18 @@ def kept_layout() -> np.dtype:
             ("thrust", "f8"),  # N, commanded
             ("hover", "f8"),  # N, command that carries the weight
             ("integral", "f8", (3,)),  # m/s², of the station keeping
+            (
+                "hovered",
+                "f8",
+                (2,),
+            ),  # m/s², horizontal, that held the UAV against the wind while it kept its station [D]
+            ("short", "f8"),  # N, that a UAV which was caught leaves to the arm and should not
+            ("falls_short", "i8"),  # 1 while that is learnt
+            ("before", "f8"),  # N, `hover` before that
             ("alone", "i8"),  # ticks for which the UAV has been told to hover by itself
+            ("step", "f8", (3,)),  # m, from where it began to do so to where it shall [D]
+            ("lost", "f8", (3,)),  # m, pivot of a UAV that is looked for, as it was reckoned then [D]
+            ("sought", "i8"),  # 1 where it is looked for
             ("trim", "f8", (3,)),  # m/s², that its own hover asks for beyond gravity [D]
             ("trimmed", "i8"),  # the sample of which that was learnt last; 0: none yet
             ("anchor", "f8", (3,)),  # m, where the centre of mass was when it began to fly on [D]

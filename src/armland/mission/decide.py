@@ -41,6 +41,7 @@ BALANCE, HELD = UAV.index("balance"), LINK.index("held")
     S_ROTORS,
     S_LEAN,
     S_IMAGE_OFFSET,
+    S_IMAGE_GAP,
 ) = (SIGNAL[name] for name in SIGNALS)
 
 COIL_S = 0.15
@@ -147,7 +148,7 @@ def fill_signals(elapsed: float, b: Record) -> None:
     out[S_BIAS] = 1.0 if b.kept.estimate.wrench.blocks >= BIAS_BLOCKS else 0.0
     out[S_MAGNET_FAULT], out[S_ROTORS], out[S_LEAN] = m.magnet_fault, e.thrust, _lean(e.quat, act.q_d)
     shown = b.kept.estimate.grip
-    out[S_IMAGE_OFFSET] = np.sqrt(shown[0] ** 2 + shown[1] ** 2)
+    out[S_IMAGE_OFFSET], out[S_IMAGE_GAP] = np.sqrt(shown[0] ** 2 + shown[1] ** 2), shown[2]
 
 
 @njit(cache=True)

@@ -92,10 +92,15 @@ def kept_layout(joints: int) -> np.dtype:
             ("grip_offset", "f8"),  # m, its size
             ("grip_tick", "i8"),  # that image's exposure
             ("grip_far", "i8"),  # images in a row in which it was too far off
+            ("grip_newest", "f8", (3,)),  # m, of the newest image alone [E]
+            ("grip_slides", "i8"),  # images in a row, unsmoothed, that show it too far off, each farther the same way
             ("thrust_log", "f8", (RING,)),  # N, commands
             ("acting", "f8"),  # N
             ("uplink", "f8"),  # ticks until a command acts on board, as the UAV's echoes say
             ("echoed", "i8"),  # the sample of which that was learnt last
+            ("downlink", "f8"),  # ticks that the UAV's samples are under way, as their stamps say
+            ("sample", "i8"),  # the stamp of the newest one
+            ("arrived", "i8"),  # tick at which that came
             ("weight", "f8"),  # N, of all that flies, as the force-torque sensor finds it
             ("filter", layouts.kept_layout()),
             ("plate", layouts.plate_layout()),
@@ -127,6 +132,7 @@ def estimate(b: Record) -> None:
     row = b.table.phases[b.kept.decide.phase]
     if b.kept.limit.started == 0 or m.tick % SINGULARITY_PERIOD == 0:
         s.sigma = smallest_singular_value(b.arm.jacobian)
+    watch_downlink(m, p, s)
     learn_uplink(m, p, s)
     e.thrust = acting_thrust(m.tick, p, s)
     estimate_arm(m, b.arm, e)
@@ -139,6 +145,8 @@ def estimate(b: Record) -> None:
     s.seen = 1 if e.plate_valid else s.seen
     predict_torque(b.kept.act.q_d, p, e)
     estimate_load(row.free == 1, b.kept.act.magnet == MAGNET_ON, b.kept.decide.retreat, b)
+    e.camera_noise, e.uplink, e.downlink = np.sqrt(s.filter.noise), s.uplink * p.tick_s, s.downlink * p.tick_s
+    e.weight, e.hover = s.weight, b.kept.act.hover
 
 
 @njit(cache=True)
@@ -152,6 +160,22 @@ def acting_thrust(tick: int, p: Record, s: Record) -> float:
     """
     s.acting += p.rotor_gain * (s.thrust_log[(tick - round(s.uplink)) % RING] - s.acting)
     return float(s.acting)
+
+
+@njit(cache=True)
+def watch_downlink(m: Record, p: Record, s: Record) -> None:
+    """Learn how long the UAV's samples are under way, from their stamps, and when the newest one came.
+
+    Args:
+        m: measurement.
+        p: what the estimate is told.
+        s: what it keeps; `downlink`, ticks, `sample` and `arrived` are updated.
+    """
+    if m.uav_tick == s.sample:
+        return
+    gain = min(max((m.uav_tick - s.sample) * p.tick_s / UPLINK_S, 0.0), 1.0)
+    s.downlink += gain * (m.tick - m.uav_tick - s.downlink)
+    s.sample, s.arrived = m.uav_tick, m.tick
 
 
 @njit(cache=True)

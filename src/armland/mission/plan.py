@@ -10,7 +10,7 @@ from armland.control.laws.table import EXACT
 from armland.errors import ConfigurationError
 from armland.mission.belief import Flyer, flyer, hinged
 from armland.mission.feasibility.capture import check_capture
-from armland.mission.feasibility.keys import check_keys, joint_speeds
+from armland.mission.feasibility.keys import check_keys
 from armland.mission.feasibility.launch import Carrying, Launch, plan_launch, timed
 from armland.mission.feasibility.path import survey_path
 from armland.mission.feasibility.reach import survey, targets
@@ -105,8 +105,8 @@ def plan(
     check_keys(scenario.own, value)
     believed = scenario.believed()
     if value.start == "hinged":
-        return _path_plan(believed, value, scenario.own, law, _row(believed, value, experiment))
-    return _flight_plan(believed, value, scenario.own, law, trial)
+        return _path_plan(believed, value, law, _row(believed, value, experiment))
+    return _flight_plan(believed, value, law, trial)
 
 
 def _row(scenario: Scenario, mission: Mission, experiment: str | None) -> str:
@@ -119,13 +119,13 @@ def _row(scenario: Scenario, mission: Mission, experiment: str | None) -> str:
     return name
 
 
-def _path_plan(scenario: Scenario, mission: Mission, own: frozenset[str], law: str | None, row: str) -> Plan:
+def _path_plan(scenario: Scenario, mission: Mission, law: str | None, row: str) -> Plan:
     arm, scenario = arm_model(scenario), tuned(scenario, row)
     c, carried, experiment = scenario.control, hinged(scenario), scenario.experiments[row]
     phases, work = mission.phases(scenario), survey_path(arm, scenario)
     chosen = row_of(law or c.law or experiment.law)
-    speeds, nowhere = joint_speeds(scenario, own, arm), np.zeros((0, 3))
-    told = tell(Telling(scenario, arm, carried, speeds, work.R_d, nowhere, experiment, chosen, mission.start, None))
+    nowhere = np.zeros((0, 3))
+    told = tell(Telling(scenario, arm, carried, arm.qd_max, work.R_d, nowhere, experiment, chosen, mission.start, None))
     return Plan(
         mission=mission,
         scenario=scenario,
@@ -144,9 +144,9 @@ def _path_plan(scenario: Scenario, mission: Mission, own: frozenset[str], law: s
     )
 
 
-def _flight_plan(scenario: Scenario, mission: Mission, own: frozenset[str], law: str | None, trial: bool) -> Plan:
+def _flight_plan(scenario: Scenario, mission: Mission, law: str | None, trial: bool) -> Plan:
     arm, takes_off, run = arm_model(scenario), mission.start == "cradle", scenario.run
-    flies, speeds = flyer(scenario), joint_speeds(scenario, own, arm)
+    flies = flyer(scenario)
     check_weight(scenario, flies, takes_off and flies_on(scenario), trial)
     if not takes_off:
         check_capture(scenario, flies.mass)
@@ -156,13 +156,13 @@ def _flight_plan(scenario: Scenario, mission: Mission, own: frozenset[str], law:
     home = survey(arm, scenario, mission, flies.weight)
     launch: Launch | None = None
     if takes_off and gives_speed(scenario):
-        launch = plan_launch(Carrying(arm, speeds, flies.mass, scenario), home)
+        launch = plan_launch(Carrying(arm, arm.qd_max, flies.mass, scenario), home)
         phases = timed(phases, launch)
     chosen = row_of(law or scenario.control.law or "exact")
     # The published laws need the weight that the rotors leave from the model; the exact ones know it.
     switches = Experiment(acceleration="implied", support="none" if chosen.law >= EXACT else "model")
     ends = _targets(mission, phases, scenario, launch)
-    told = tell(Telling(scenario, arm, flies, speeds, UPRIGHT, ends, switches, chosen, mission.start, launch))
+    told = tell(Telling(scenario, arm, flies, arm.qd_max, UPRIGHT, ends, switches, chosen, mission.start, launch))
     return Plan(
         mission=mission,
         scenario=scenario,

@@ -27,6 +27,9 @@ GRIP_GAIN = 0.4
 SURE = 3.0
 """Standard deviations that noise does not explain."""
 
+ONE_WAY = 0.8
+"""Cosine of the angle between the offsets of two images above which they show one motion."""
+
 AUTONOMOUS, STATION, LEVEL, CRUISE = (UAV.index(name) for name in ("autonomous", "station", "level", "cruise"))
 
 
@@ -114,14 +117,21 @@ def look_at_grip(m: Record, p: Record, s: Record) -> None:
     seen = m.camera_capture % FILTER_RING
     body = multiply(s.filter.align.quat, s.filter.quat[seen])
     R_eb = matrix(multiply(conjugate(s.filter.camera_quat[seen]), body))
-    apart, variance = 0.0, 0.0
+    apart, variance, newest, before, along = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(3):
         across = p.camera[i] + m.camera_position[i]
         for k in range(3):
             across += R_eb[i, k] * (p.lever[k] - marker.marker_offset[k])
         # Outliers scatter, a plate that has slid stays where it is.
         s.grip[i] += GRIP_GAIN * (across - s.grip[i])
+        newest += across**2
+        before += s.grip_newest[i] ** 2
+        along += across * s.grip_newest[i]
+        s.grip_newest[i] = across
         apart += s.grip[i] ** 2
         variance += s.filter.noise * m.camera_sigma[i] ** 2
     s.grip_offset, s.grip_tick = np.sqrt(apart), m.camera_capture
-    s.grip_far = s.grip_far + 1 if s.grip_offset > p.slip + SURE * np.sqrt(variance) else 0
+    far = p.slip + SURE * np.sqrt(variance)
+    s.grip_far = s.grip_far + 1 if s.grip_offset > far else 0
+    slides = newest > before and along > ONE_WAY * np.sqrt(newest * before)
+    s.grip_slides = 0 if newest < far**2 else (s.grip_slides + 1 if slides else 1)

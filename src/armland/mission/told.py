@@ -17,6 +17,7 @@ from armland.mission.board import board_layout
 from armland.mission.feasibility.launch import Launch
 from armland.mission.feasibility.room import room
 from armland.mission.feasibility.weight import HOVER_SHARE
+from armland.mission.reference import view
 from armland.mission.table.mission import Start
 from armland.models.arm import ArmModel
 from armland.models.parameters import ROTORS
@@ -30,6 +31,9 @@ JOINT_LEAP_RAD_S = 50.0
 
 ATTITUDE_LEAP_RAD = 0.15
 """Turn of the UAV's attitude between two samples, beyond what its rates explain, that no UAV makes."""
+
+LATE_S, LATER_S = 0.2, 0.1
+"""Delay of the link, both ways, with which no UAV is guided; by how much it may exceed the one that it is told."""
 
 SWING = 0.75
 """The wrist's share of a balancing pivot's displacement. At this one the pivot may be fastest: 0.9 to 1.1 m/s across the corners
@@ -131,11 +135,16 @@ def _decide(p: Records, t: Telling) -> None:
     p["magnet_ready"], p["clear_z"] = limits.magnet_share * s.magnet.rating_n, s.place.put_down_m[2] + CLEAR_M
     watch["tick_s"] = t.tick_s
     watch["uav_age"], watch["camera_age"] = t.ticks(limits.uav_age_ms), 1e-3 * limits.camera_age_ms
+    watch["search_age"] = 1e-3 * limits.search_ms
     watch["arm_age"], watch["wrench_age"] = t.ticks(limits.arm_age_ms), t.ticks(limits.wrench_age_ms)
+    link = 1e-3 * (s.link.uplink_delay_ms + s.link.downlink_delay_ms)
+    watch["late"], watch["uav_late"] = max(LATE_S, link + LATER_S), 1e-3 * limits.uav_age_ms
     watch["unexplained"], watch["load_gone"] = limits.unexplained_n, limits.load_gone_n
     watch["hinge_max"], watch["tilt_max"] = limits.hinge_force_share * s.magnet.rating_n, np.deg2rad(limits.tilt_deg)
     static = ROTORS * s.rotors.max_thrust_n
-    watch["thrust_max"], watch["hover_max"] = s.control.thrust.ceiling * static, HOVER_SHARE * static
+    # One that flies on with all its thrust need not hover.
+    watch["thrust_max"] = s.control.thrust.ceiling * static
+    watch["hover_max"] = np.inf if s.place.fly_on else HOVER_SHARE * static
     watch["joint_margin"], watch["sigma_min"] = limits.joint_margin_rad, limits.sigma_min
     watch["speed_share"] = limits.joint_speed_share
 
@@ -155,6 +164,7 @@ def _refer(p: Records, t: Telling) -> None:
         p["coast"] = max(a.coast_s, float(np.linalg.norm(t.launch.velocity)) / t.launch.acceleration)
     b, limits, rate = p["balance"], s.limits, _fall_rate(t)
     b["fall_rate"], b["gains"] = rate, balance_gains(rate) if np.isfinite(rate) else 0.0
+    b["gravity"] = t.flyer.gravity
     b["push_max"], b["sway_max"] = limits.balance_push_mps2, limits.balance_reach_m
     # The last joint but one tilts the tool: where it sits is the wrist.
     b["swing"], b["wrist"] = SWING, np.linalg.norm(t.arm.position - t.arm.anchor[-2])
@@ -179,6 +189,7 @@ def _uav(p: Records, t: Telling) -> None:
     p["speed_max"], p["integral_max"] = station.speed_max_mps, station.integral_max_mps2
     p["coming_max"] = COMING_MPS2
     p["tilt_max"], p["gust_share"], p["gust_max"] = station.tilt_max_rad, station.gust_share, station.gust_max_mps2
+    p["sight"] = view.told(s, t.flyer.body.lever)
 
 
 def _law(p: Records, t: Telling) -> None:
@@ -203,7 +214,8 @@ def _limit(p: Records, t: Telling) -> None:
         p["uav_age"] = t.ticks(s.link.watchdog_ms)
         return
     p["joint_margin"], p["speed_share"] = limits.joint_margin_rad, limits.joint_speed_share
-    p["torque_rate"], p["hinge_max"] = limits.torque_rate_nm_s, limits.hinge_force_share * s.magnet.rating_n
+    p["torque_rate"] = arm.torque_rate if limits.torque_rate_nm_s is None else limits.torque_rate_nm_s
+    p["hinge_max"] = limits.hinge_force_share * s.magnet.rating_n
     p["uav_age"] = t.ticks(limits.uav_age_ms)
 
 

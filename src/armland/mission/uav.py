@@ -17,16 +17,26 @@ import numpy as np
 from numba import njit
 
 from armland.control.laws.station_keeping import attitude_of
-from armland.mission.reference.guided import cruise, keep, lean_against_drag, learn_trim, take_over
+from armland.mission.reference.guided import (
+    cruise,
+    keep,
+    keep_shortfall,
+    lean_against_drag,
+    learn_shortfall,
+    learn_trim,
+    take_over,
+)
+from armland.mission.reference.view import in_view, seek
+from armland.mission.reference.view import told_layout as view_told
 from armland.mission.table.phases import LINK, UAV
 from armland.records import Record, UavMode
-from armland.rotations import Array, conjugate, multiply
+from armland.rotations import Array, conjugate, matrix, multiply, turned
 
 AUTONOMOUS, STATION, LEVEL, RAMP, BALANCE, OFF, RUN_UP, CRUISE, HINGED = range(len(UAV))
 MODE_AUTONOMOUS, MODE_OFF = UavMode.AUTONOMOUS, UavMode.OFF
 MODES = (UavMode.GUIDED, UavMode.HELD, UavMode.LANDED, UavMode.CAUGHT, UavMode.HINGED)
 """By index into `phases.LINK`."""
-HELD = LINK.index("held")
+HELD, CAUGHT = LINK.index("held"), LINK.index("caught")
 
 RECKONED_S = 0.5
 """How long the station is kept by reckoning alone: a UAV that has left the camera's view comes back into it, and the error of its
@@ -68,6 +78,7 @@ def told_layout() -> np.dtype:
             ("gust_share", "f8"),  # of the disturbance in the plate filter
             ("gust_max", "f8"),  # m/s²
             ("coming_max", "f8"),  # m/s², of the acceleration that is carried on over the uplink's delay
+            ("sight", view_told()),
         ]
     )
 
@@ -91,15 +102,20 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
         c.uav_mode = MODE_AUTONOMOUS
         s.thrust = s.hover
         _level(p, s)
+        if what == STATION:
+            seek(s.alone * p.tick_s, e, b.kept.estimate.seen == 1, p, s)
     elif what == STATION:
+        keep_shortfall(p, s)
         if s.alone > 0:
             take_over(b.kept.estimate.plate.bias, p, s)
         if tick % p.period == 0:
-            keep(p.station, p.lever, np.zeros(3), b)
+            keep(in_view(e, p), p.lever, np.zeros(3), b)
     elif what == CRUISE:
         if tick % p.period == 0 or s.cruising == 0:
             cruise(tick, b)
     elif what == RAMP:
+        if row.link == CAUGHT:
+            learn_shortfall(b)
         _ramp(row.share * s.hover, row.link == HELD, b.kept.estimate.weight, e, p, s)
         _level(p, s)
         if row.share == 0.0 and s.thrust <= p.thrust_min:
@@ -115,7 +131,16 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
         # What the law made of it: the rotors may not give what was asked for.
         s.thrust = c.thrust if row.held else p.hinged
     s.alone = s.alone + 1 if c.uav_mode == MODE_AUTONOMOUS else 0
-    quat = multiply(conjugate(align), s.q_d)
+    s.sought = s.sought if s.alone > 0 else 0
+    _send(conjugate(align), s, c)
+
+
+@njit(cache=True)
+def _send(own: Array, s: Record, c: Record) -> None:
+    # Thrust, set-point and step as they travel: in the UAV's own idea of the world, to which `own` (4,) turns.
+    quat, step = multiply(own, s.q_d), turned(matrix(own), s.step)
+    for i in range(3):
+        c.uav_step[i] = step[i] if s.sought else 0.0
     for i in range(4):
         c.uav_quat[i] = quat[i]
     c.thrust = s.thrust
@@ -135,6 +160,7 @@ def _free_of_force(e: Record, p: Record, s: Record) -> None:
     for i in range(2):
         s.integral[i] += p.balance_rate * e.hinge_force[i] / p.mass * p.tick_s
         s.integral[i] = min(max(s.integral[i], -LEANT_MPS2), LEANT_MPS2)
+        s.hovered[i] = s.integral[i]
     s.integral[2] = s.thrust / p.mass - p.gravity
     lean = np.array([s.integral[0], s.integral[1], p.gravity])
     q_d = attitude_of(lean, p.heading)

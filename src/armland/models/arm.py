@@ -4,6 +4,7 @@ It is the controller's own `MjModel` and never the plant's: a wrong model is an 
 Symbols, names and units: `armland.models.chain`, which evaluates it.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import mujoco
@@ -12,6 +13,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from armland.errors import ModelError
+from armland.models.arm_file.reading import read_arm
+from armland.models.arm_file.spec import PREFIX
+from armland.models.arm_file.table import Asked, Row
 from armland.models.chain import (
     Views,
     bias,
@@ -20,7 +24,7 @@ from armland.models.chain import (
     refresh,
     state_layout,
 )
-from armland.models.description import EE_SITE, compile_spec, mark_end_effector, read_spec
+from armland.models.description import EE_SITE, compile_spec, mark_end_effector
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario.arm import Tool
@@ -51,6 +55,7 @@ class ArmModel:
         what: str = "the arm",
         inertia_scale: float = 1.0,
         gravity: tuple[float, float, float] = EARTH,
+        rows: Sequence[Row] | None = None,
     ) -> None:
         """Compile `spec`.
 
@@ -59,6 +64,7 @@ class ArmModel:
             what: its name in messages.
             inertia_scale: factor on all its masses and inertias: a deliberately wrong model.
             gravity: (3,) m/s², axes of the arm's base.
+            rows: the arm's table, for what a spec has no place for; no limit of speed and torque rate if absent.
 
         Raises:
             ModelError: unphysical inertia, or not a serial arm.
@@ -72,9 +78,13 @@ class ArmModel:
         """The model's `MjData` at the last update, for reading."""
         n = model.nv
         self.joints: int = n
-        self.joint_names: tuple[str, ...] = tuple(model.joint(i).name for i in range(n))
+        self.joint_names: tuple[str, ...] = tuple(model.joint(i).name.removeprefix(PREFIX) for i in range(n))
         self.q_min, self.q_max = _ranges(model)
         self.tau_max: Array = _torque_limits(model)
+        self.qd_max: Array = np.array([r.speed.number for r in rows]) if rows else np.full(n, np.inf)
+        """Rated speed of each joint (n,), rad/s or m/s."""
+        self.torque_rate: Array = np.array([r.torque_rate.number for r in rows]) if rows else np.full(n, np.inf)
+        """Largest rate of each joint's torque (n,), N·m/s or N/s."""
         self.state: NDArray[np.void] = np.zeros(1, state_layout(n))
         self.jacobian: Array = self.state["jacobian"][0]
         self.mass_matrix: Array = self.state["mass_matrix"][0]
@@ -92,19 +102,30 @@ class ArmModel:
 
     @classmethod
     def load(cls, path: str | Path, ee_frame: str, tool: Tool | None = None) -> "ArmModel":
-        """Load an arm from MJCF or URDF.
+        """Load an arm from MJCF or URDF, without reflected inertia of motors where the file has none.
 
         Args:
-            path: MJCF or URDF file of one serial arm.
-            ee_frame: site, body or link that is the end effector; its z axis points out of the flange.
+            path: MJCF or URDF file.
+            ee_frame: site, body or link that is the end effector, its z axis pointing out of the flange; `FRAME:x` where x does.
             tool: rigid tool mounted at `ee_frame`; the controlled point is then its tip.
 
         Raises:
             ModelError: missing or malformed file, unknown frame, unphysical inertia, not a serial arm.
         """
-        spec = read_spec(path)
-        mark_end_effector(spec, ee_frame, tool)
-        return cls(spec, f"arm file {str(path)!r}")
+        file = read_arm(path, Asked(ee_frame, armature=0.0))
+        spec = file.spec()
+        mark_end_effector(spec, file.frame, tool)
+        return cls(spec, f"arm file {str(path)!r}", rows=file.rows)
+
+    @property
+    def friction(self) -> Array:
+        """Coulomb friction of each joint (n,), N·m, as the arm's file has it; M, C and g know nothing of it."""
+        return self.model.dof_frictionloss
+
+    @property
+    def damping(self) -> Array:
+        """Viscous friction of each joint (n,), N·m·s/rad, likewise."""
+        return self.model.dof_damping
 
     def update(self, q: Array, qd: Array) -> None:
         """Evaluate the model at joint positions `q` (n,) rad and velocities `qd` (n,) rad/s."""
@@ -132,7 +153,7 @@ class ArmModel:
 def _check_serial(model: mujoco.MjModel, what: str) -> None:
     hinge, slide = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
     for i in range(model.njnt):
-        name, body = model.joint(i).name, model.body(int(model.jnt_bodyid[i])).name
+        name, body = (n.removeprefix(PREFIX) for n in (model.joint(i).name, model.body(int(model.jnt_bodyid[i])).name))
         if model.jnt_type[i] not in (hinge, slide):
             raise ModelError(
                 f"{what}: joint {name!r} of body {body!r} is neither a hinge nor a slide, so it cannot be driven"

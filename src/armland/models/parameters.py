@@ -7,21 +7,32 @@ import numpy as np
 
 from armland.errors import ModelError
 from armland.models.arm import ArmModel
+from armland.models.arm_file.reading import ArmFile, read_arm
+from armland.models.arm_file.table import Asked
 from armland.models.description import compile_spec, mark_end_effector, read_spec, resolve
 from armland.models.uav import UavParameters, mixer
 from armland.rotations import Array, matrix
 from armland.scenario import Scenario
 
 
-def arm_spec(scenario: Scenario) -> mujoco.MjSpec:
-    """The arm of a scenario with its tool and end effector marked, not yet compiled.
+def arm_file(scenario: Scenario) -> ArmFile:
+    """What is taken for true of a scenario's arm: its chain, and a value with its source for each limit.
 
     Raises:
-        ModelError: missing or malformed file, unknown frame.
+        ModelError: a file that cannot be used.
+        ConfigurationError: another number of limits than the arm has joints.
     """
-    spec = read_spec(resolve(scenario.arm.file))
-    mark_end_effector(spec, scenario.arm.ee, scenario.tool)
-    apply_default_armature(spec, scenario.arm.default_armature_kgm2)
+    a = scenario.arm
+    lock = tuple(sorted(a.lock.items()))
+    asked = Asked(a.ee, lock, a.torque_limits_nm, a.joint_speed_rad_s, a.torque_rate_nm_s, a.default_armature_kgm2)
+    return read_arm(resolve(a.file), asked)
+
+
+def arm_spec(scenario: Scenario) -> mujoco.MjSpec:
+    """The arm of a scenario with its tool and end effector marked, not yet compiled; errors as for `arm_file`."""
+    file = arm_file(scenario)
+    spec = file.spec()
+    mark_end_effector(spec, file.frame, scenario.tool)
     return spec
 
 
@@ -32,17 +43,8 @@ def arm_model(scenario: Scenario) -> ArmModel:
         ModelError: a file that cannot be used.
     """
     gravity = scenario.environment.gravity_mps2
-    return ArmModel(arm_spec(scenario), f"arm file {scenario.arm.file!r}", scenario.arm.inertia_scale, gravity)
-
-
-def apply_default_armature(spec: mujoco.MjSpec, armature: float) -> None:
-    """Give each joint without reflected motor inertia the default one, `armature` kg·m².
-
-    Link inertias alone leave a wrist of about 1e-3 kg·m², on which the published orientation gains are unstable at 1 kHz.
-    """
-    for joint in spec.joints:
-        if np.all(joint.armature == 0.0):
-            joint.armature = armature
+    what, scale = f"arm file {scenario.arm.file!r}", scenario.arm.inertia_scale
+    return ArmModel(arm_spec(scenario), what, scale, gravity, arm_file(scenario).rows)
 
 
 class _Frame(NamedTuple):

@@ -83,7 +83,7 @@ def home_poses(arm: ArmModel, position: Array | None, near: Array | None, elbow:
     where = "" if position is None else f" at {_text(position)} m"
     raise WorkspaceError(
         f"the arm cannot hold its end effector upright{where}: the best pose misses it by {1e3 * best.distance:.1f} mm "
-        f"and {np.rad2deg(best.tilt):.1f}°; change trajectory.start_m or set arm.home_rad"
+        f"and {np.rad2deg(best.tilt):.1f}°"
     )
 
 
@@ -181,7 +181,7 @@ def _solve(arm: ArmModel, start: Array, task: _Task) -> Pose:
 
 def _newton(q: Array, e: Array, J: Array, drift: Array, task: _Task) -> Array:
     # Joints that would leave their range are held at its end and the others solve again.
-    free, (_, _, low, high, _, _) = np.ones(q.size, dtype=bool), task
+    free, low, high = np.ones(q.size, dtype=bool), task.low, task.high
     for _ in range(q.size):
         Jf = J * free
         # The damping fades with the error, so the last steps are full Newton steps.

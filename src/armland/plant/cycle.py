@@ -147,5 +147,5 @@ def _finite(c: Record, t: Record) -> bool:
     for i in range(4):
         total += c.uav_quat[i] + t.quat[i]
     for i in range(3):
-        total += c.delta_tau[i] + t.r[i] + t.omega[i]
+        total += c.delta_tau[i] + c.uav_step[i] + t.r[i] + t.omega[i]
     return bool(np.isfinite(total))

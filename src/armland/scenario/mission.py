@@ -75,13 +75,16 @@ class Bounds(Section):
 class Limits(Section):
     """Limits that the supervisor enforces."""
 
+    rising = (("camera_age_ms", "search_ms", "a UAV that is looked for may stay unseen for longer"),)
+
     hinge_force_share: of.PositiveFraction = key(0.6, "largest hinge force over the magnet's rating")
     joint_speed_share: of.PositiveFraction = key(0.9, "share of the joints' rated speed at which the arm is stopped")
-    torque_rate_nm_s: of.Gain = key(1500.0, "largest rate of a joint torque")
+    torque_rate_nm_s: of.Gain | None = key(None, "largest rate of all joints' torques; the arm's own if absent")
     joint_margin_rad: of.Fraction = key(0.02, "distance to a joint's end at which only motion away is left")
     sigma_min: Annotated[float, between(1e-6, 1.0)] = key(0.03, "ratio: smallest singular value of the Jacobian")
     uav_age_ms: of.PositiveMilliseconds = key(250.0, "age of the UAV's sample at which it counts as silent")
     camera_age_ms: of.PositiveMilliseconds = key(2000.0, "age of the camera's sample at which it counts as blind")
+    search_ms: of.PositiveMilliseconds = key(8000.0, "likewise while the arm waits below and the UAV is looked for")
     arm_age_ms: of.PositiveMilliseconds = key(5.0, "age of the joints' sample at which the arm is stopped")
     wrench_age_ms: of.PositiveMilliseconds = key(
         20.0, "age of the force-torque sensor's sample at which it counts as dead"

@@ -96,6 +96,7 @@ class Scenario(Section):
     _text: str = PrivateAttr("")
     _overrides: str = PrivateAttr("")
     _own: frozenset[str] = PrivateAttr(frozenset())
+    _asked: frozenset[str] = PrivateAttr(frozenset())
 
     @property
     def text(self) -> str:
@@ -111,6 +112,11 @@ class Scenario(Section):
     def own(self) -> frozenset[str]:
         """Dotted paths of the keys that the user set, in the file or beside it; those of a base are not among them."""
         return self._own
+
+    @property
+    def asked(self) -> frozenset[str]:
+        """Dotted paths of the keys that the user set, in any file of his own or beside it: none that only armland's files set."""
+        return self._asked
 
     def replaced(self, changes: dict[str, Any]) -> "Scenario":
         """The scenario with nested `changes`, checked.
@@ -144,7 +150,7 @@ class Scenario(Section):
 
     def _with(self, other: "Scenario") -> "Scenario":
         # Another scenario of the same source.
-        other._text, other._overrides, other._own = self._text, self._overrides, self._own
+        other._text, other._overrides, other._own, other._asked = self._text, self._overrides, self._own, self._asked
         return other
 
     def _contradictions(self) -> list[str]:

@@ -8,14 +8,15 @@ from armland.control.design.gains import MAX_SENSITIVITY
 from armland.control.design.margins import Loop, margins
 from armland.control.laws.rigid_body import UavParameters
 from armland.errors import ConfigurationError
+from armland.mission.reference.balance import OBSERVED
 
 UAV = UavParameters(0.48, np.diag([0.006, 0.007, 0.012]), np.array([0.0, 0.0, -0.06]))
 RATE = fall_rate(UAV)
 LINK_S, ARM_S = 0.0175, 0.004
 
 
-def balance_loop(gains, rate, delay, arm=0.0, predicts=True):
-    """Loop of (B.1) under (B.3), broken at u.
+def balance_loop(gains, rate, delay, arm=0.0, predicts=True, pole=None):
+    """Loop of (B.1) under (B.3), broken at u; with the observer (B.6) where it has a `pole`, 1/s.
 
     Args:
         gains: of `balance_gains`.
@@ -34,7 +35,14 @@ def balance_loop(gains, rate, delay, arm=0.0, predicts=True):
     late = np.polyadd(np.array([k.tilt_rate, 0.0]), (k.tilt + step * w2 * delay) * carried)
     body = np.polymul(late, [1.0, 0.0, 0.0]).astype(np.float64) * w2 / 9.81
     known = step * w2 / 9.81 * np.array([1.0, 0.0, -w2, 0.0])
-    return Loop((pivot, body, known, -known), (0.0, arm + delay, 0.0, delay), denominator)
+    parts, delays = [pivot, body, known, -known], [0.0, arm + delay, 0.0, delay]
+    if pole is not None:
+        # By (B.1) θ − θ̈/ω₀² is u/g, an `arm` later than (B.6) takes it to be: θ₀ = p²/(s + p)² e^(−sT) (e^(−s arm) − 1) u/g.
+        slow = np.array([1.0, 2.0 * pole, pole**2])
+        found = (k.tilt + step * w2 * delay) / 9.81 * pole**2 * denominator
+        parts = [np.polymul(p, slow).astype(np.float64) for p in parts] + [found, -found]
+        delays, denominator = [*delays, delay + arm, delay], np.polymul(denominator, slow).astype(np.float64)
+    return Loop(tuple(parts), tuple(delays), denominator)
 
 
 def test_fall_rate_is_that_of_a_compound_pendulum():
@@ -56,6 +64,16 @@ def test_margins_need_the_prediction():
     gains = balance_gains(RATE)
     assert margins(balance_loop(gains, RATE, LINK_S, ARM_S)).sensitivity < MAX_SENSITIVITY
     assert not np.isfinite(margins(balance_loop(gains, RATE, LINK_S, ARM_S, predicts=False)).sensitivity)
+
+
+def test_margins_bear_the_observer():
+    gains = balance_gains(RATE)
+    alone = margins(balance_loop(gains, RATE, LINK_S, ARM_S)).sensitivity
+    observed = margins(balance_loop(gains, RATE, LINK_S, ARM_S, pole=OBSERVED * RATE)).sensitivity
+    assert alone < observed < MAX_SENSITIVITY
+    # An arm that is as late as (B.6) takes it to be makes it invisible.
+    exact = margins(balance_loop(gains, RATE, LINK_S, 0.0, pole=OBSERVED * RATE)).sensitivity
+    assert exact == pytest.approx(margins(balance_loop(gains, RATE, LINK_S)).sensitivity, rel=1e-3)
 
 
 def test_a_body_that_hangs_needs_no_balancing():

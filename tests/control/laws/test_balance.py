@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from armland.control.design.balance import balance_gains, fall_rate
-from armland.control.laws.balance import capture_angle, fall, lean_of, predicted, push
+from armland.control.laws.balance import capture_angle, fall, falling, lean_of, observed, predicted, push
 from armland.control.laws.rigid_body import UavParameters
 from armland.rotations import from_rotation_vector, matrix, multiply
 
@@ -90,7 +90,8 @@ def test_lean_is_the_bodys_axis_and_its_rate():
     np.testing.assert_allclose(found[:2], matrix(quat)[:2, 2], atol=1e-12)
     np.testing.assert_allclose(found[2:], (axes[1] - axes[0]) / 2e-6, atol=1e-8)
     expected = np.hypot(found[0] + found[2] / RATE, found[1] + found[3] / RATE)
-    assert capture_angle(quat, omega, RATE) == pytest.approx(expected)
+    assert capture_angle(quat, omega, RATE, np.zeros(2)) == pytest.approx(expected)
+    assert capture_angle(quat, omega, RATE, matrix(quat)[:2, 2]) == pytest.approx(np.hypot(*found[2:]) / RATE)
 
 
 def test_b5_predicts_over_the_delay():
@@ -102,6 +103,23 @@ def test_b5_predicts_over_the_delay():
     assert rate == pytest.approx(cart.data.qvel[1], abs=0.03)
     assert tilt == pytest.approx(cart.data.qpos[1], abs=1e-3)
     assert abs(0.6 - cart.data.qvel[1]) > 0.5
+
+
+@pytest.mark.parametrize("pole", [4.0, 8.0])
+def test_b6_finds_the_tilt_at_which_a_side_force_lets_it_stand(pole):
+    """A side force F at the centre of mass is balanced at θ₀ = −F/(m g); the error decays as (1 + p t/…) e^(−p t)."""
+    cart, gains, upright, carried, force = Cart(), balance_gains(RATE), 0.0, 0.0, 0.15
+    cart.data.xfrc_applied[2, 0] = force
+    true, errors = -force / (0.48 * 9.81), []
+    for _ in range(3000):
+        (x, tilt), (v, rate) = cart.data.qpos, cart.data.qvel
+        upright, carried = observed(upright, carried, tilt, falling(rate, v, RATE), 1e-3, RATE, pole)
+        errors.append(upright - true)
+        cart.go(push(tilt - true, rate, x, v, gains, 15.0, 1.0), 1e-3)
+    t = np.arange(1, 3001) * 1e-3
+    # Both poles at −p, from an error that is seen only through what it does to w.
+    np.testing.assert_allclose(errors, -true * (1.0 + pole * t) * np.exp(-pole * t), atol=0.03 * abs(true))
+    assert errors[-1] == pytest.approx(0.0, abs=1e-3 * abs(true))
 
 
 def test_stands_up_and_comes_back():

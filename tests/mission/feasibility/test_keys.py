@@ -1,10 +1,9 @@
 """Keys without effect and speeds of another arm are refused by their path."""
 
-import numpy as np
 import pytest
 
 from armland.errors import ConfigurationError
-from armland.mission.feasibility.keys import check_keys, joint_speeds
+from armland.mission.feasibility.keys import check_keys
 from armland.mission.plan import plan
 from armland.mission.registry import MISSIONS
 from armland.scenario import load_scenario
@@ -50,12 +49,3 @@ def test_prefix_of_a_key_is_a_whole_table_and_no_part_of_a_word():
     with pytest.raises(ConfigurationError, match="runner"):
         check_keys(frozenset({"runner"}), MISSIONS["landing"])
     check_keys(frozenset({"run.seed"}), MISSIONS["landing"])
-
-
-def test_speeds_of_another_number_of_joints_are_refused_only_if_somebody_wrote_them(landing_plan):
-    one = load_scenario("landing", {"arm": {"joint_speed_rad_s": [1.0]}})
-    with pytest.raises(ConfigurationError, match=r"arm\.joint_speed_rad_s has 1 value; the arm has 7 joints: A1"):
-        joint_speeds(one, one.own, landing_plan.arm)
-    default = load_scenario("landing")
-    np.testing.assert_array_equal(joint_speeds(default, default.own, landing_plan.arm), default.arm.joint_speed_rad_s)
-    assert len(joint_speeds(one, frozenset(), landing_plan.arm)) == 7

@@ -80,7 +80,7 @@ def test_refusals_before_anything_moves(place, words):
 
 def carrying(made, velocity, speeds=None):
     wanted = scenario(takeoff_velocity_mps=velocity)
-    speeds = np.array(wanted.arm.joint_speed_rad_s) if speeds is None else speeds
+    speeds = made.arm.qd_max if speeds is None else speeds
     return Carrying(made.arm, speeds, 0.53, wanted)
 
 

@@ -11,9 +11,13 @@ DT = 1e-3
 
 
 class Pendulum:
-    """Two inverted pendulums on the pivot that the reference moves, seen `late` ticks late and carried on by their rates."""
+    """Two inverted pendulums on the pivot that the reference moves, seen `late` ticks late and carried on by their rates.
 
-    def __init__(self, bench, lean, late, height=0.8):
+    They stand at a tilt `stands` (2,); the UAV hovered with the acceleration `hovered` (2,), m/s².
+    """
+
+    def __init__(self, bench, lean, late, height=0.8, stands=(0.0, 0.0), hovered=(0.0, 0.0)):
+        self.stands, self.hovered = np.array(stands), np.array(hovered)
         self.bench, self.late, self.claimed = bench, late, late
         self.told, self.kept, self.e, self.r = bench.told["refer"], bench.kept["refer"], bench.e, bench.tick.reference
         self.rate = self.told["balance"]["fall_rate"][0]
@@ -21,7 +25,7 @@ class Pendulum:
         self.past = [(self.theta.copy(), self.theta_dot.copy())] * (late + 1)
         self.e["r"], self.e["v"] = [0.6, 0.0, height], 0.0
         self.kept["r0"], self.kept["v0"] = self.e["r"], 0.0
-        begin_balance(self.e[0], self.told["balance"][0], self.kept["balance"][0])
+        begin_balance(self.e[0], self.hovered, self.told["balance"][0], self.kept["balance"][0])
 
     def run(self, seconds):
         for _ in range(round(seconds / DT)):
@@ -34,7 +38,7 @@ class Pendulum:
             move(BALANCE, k * DT, 0.0, 0, self.e[0], self.told[0], self.kept[0], self.r[0])
             refer_balance(k * DT, self.claimed, self.e[0], self.told[0], self.kept[0], self.r[0])
             push = self.kept["balance"]["sway_a"][0]
-            self.theta_dot = self.theta_dot + self.rate**2 * (self.theta - push / 9.81) * DT
+            self.theta_dot = self.theta_dot + self.rate**2 * (self.theta - self.stands - push / 9.81) * DT
             self.theta = self.theta + self.theta_dot * DT
             self.past.append((self.theta, self.theta_dot))
         return np.abs(self.theta).max()
@@ -51,6 +55,47 @@ def test_without_a_push_it_falls(bench):
     pendulum = Pendulum(bench, [0.03, -0.02], 0)
     bench.told["refer"]["balance"]["gains"] = 0.0
     assert pendulum.run(1.0) > 0.5
+
+
+WIND = (0.05, -0.02)
+"""Tilts at which a UAV stands in a wind of about 1 m/s with a biased attitude."""
+
+
+@pytest.mark.parametrize("late", [0, 20])
+def test_b6_finds_the_tilt_at_which_it_stands_and_the_pivot_comes_back(bench, late):
+    pendulum = Pendulum(bench, [0.0, 0.0], late, stands=WIND)
+    pendulum.run(5.0)
+    np.testing.assert_allclose(pendulum.kept["balance"]["upright"][0], WIND, atol=1e-3)
+    np.testing.assert_allclose(pendulum.kept["balance"]["sway"][0], 0.0, atol=5e-3)
+
+
+def test_without_b6_the_pivot_runs_away_with_the_wind(bench):
+    pendulum = Pendulum(bench, [0.0, 0.0], 0, stands=WIND)
+    for _ in range(3000):
+        pendulum.kept["balance"]["upright"] = 0.0
+        pendulum.run(DT)
+    assert np.abs(pendulum.theta).max() > 0.5
+
+
+def test_lean_of_the_hover_spares_the_pivot_its_way(bench):
+    def way(hovered):
+        pendulum = Pendulum(bench, WIND, 10, stands=WIND, hovered=hovered)
+        ways = []
+        for _ in range(200):
+            pendulum.run(0.01)
+            ways.append(np.abs(pendulum.kept["balance"]["sway"]).max())
+        return max(ways)
+
+    assert way(9.81 * np.array(WIND)) < 1e-4
+    assert way((0.0, 0.0)) > 0.01
+
+
+def test_what_rotors_still_give_while_they_run_down_is_not_taken_for_wind(bench):
+    pendulum = Pendulum(bench, [0.0, 0.0], 0, stands=WIND)
+    pendulum.run(0.12)
+    np.testing.assert_array_equal(pendulum.kept["balance"]["upright"][0], 0.0)
+    pendulum.run(0.2)
+    assert pendulum.kept["balance"]["upright"][0, 0] > 0.01
 
 
 def test_delay_that_is_not_reckoned_with_is_worse(bench):
@@ -114,7 +159,7 @@ def run_steadily(bench, speed, gains=None, tilt=0.0, ticks=41):
     kept["r0"], told["coast"] = e["r"], 1e9
     e["quat"][0] = from_rotation_vector(np.array([0.0, tilt, 0.0]))
     told["balance"]["gains"] = 0.0 if gains is None else gains
-    begin_balance(e[0], told["balance"][0], kept["balance"][0])
+    begin_balance(e[0], np.zeros(2), told["balance"][0], kept["balance"][0])
     rows = []
     for k in range(ticks):
         e["tick"] = 1000 + k
@@ -167,7 +212,7 @@ def test_attitude_that_is_too_old_brings_the_pivot_to_rest(bench, age, balanced)
     assert told["balance"]["attitude_age"][0] == 50
     bench.e["quat"][0] = from_rotation_vector(np.array([0.0, 0.03, 0.0]))
     bench.e["v"], bench.e["r"] = [0.1, 0.0, 0.0], [0.6, 0.0, 0.9]
-    begin_balance(bench.e[0], told["balance"][0], kept["balance"][0])
+    begin_balance(bench.e[0], np.zeros(2), told["balance"][0], kept["balance"][0])
     refer_balance(0.0, age, bench.e[0], told[0], kept[0], bench.tick.reference[0])
     slowing = -0.1 / told["coast"][0]
     assert (kept["balance"]["sway_a"][0, 0] == pytest.approx(slowing)) != balanced

@@ -20,7 +20,15 @@ def bench(bench):
     """The arm is where its reference is, and the sensor's nod has weighed the tool."""
     bench.kept["refer"]["r"], bench.kept["estimate"]["nod"]["gain"] = bench.e["r"], 1.0
     bench.kept["act"]["hover"], bench.kept["act"]["thrust"] = weight(bench), 0.5 * weight(bench)
+    # What the sensor reads of the tool at rest.
+    bench.m["wrench"][0, 2] = tool(bench)
+    bench.kept["estimate"]["arrived"] = 1000
     return bench
+
+
+def tool(bench):
+    """Its weight beyond the sensor, N."""
+    return float(bench.told["estimate"]["wrench"]["mass"][0] * bench.told["act"]["uav"]["gravity"][0])
 
 
 def weight(bench):
@@ -68,10 +76,18 @@ def provoke(bench, fault):
             bench.kept["decide"]["seen"]["off"], bench.kept["decide"]["grip"] = 500, bench.e["r"] + [0.0, 0.0, 0.003]
             bench.e["hinge_force"] = [-20.0, 0.0, 0.0]
             return {"arm": BACK_OFF}
+        case "link_late":
+            bench.e["uplink"], bench.e["downlink"] = 0.15, 0.1
+        case "thrust_short":
+            kept = bench.kept["decide"]
+            kept["seen"]["off"], kept["seen"]["carried"], kept["retreat"] = 500, 1, 0.12
+            bench.e["plate"], bench.e["plate_age"], bench.e["thrust"] = bench.e["r"], 0.05, weight(bench)
+            bench.e["hinge_force"][0, 2] = kept["seen"]["short"] = 0.2 * weight(bench)
+            return {"arm": MOVE, "held": 0}
         case "arm_blocked":
             bench.kept["refer"]["r"][0, 1] += 0.04
         case "thrust_lost":
-            bench.kept["act"]["thrust"], bench.e["plate_v"] = 1.2 * weight(bench), [0.0, 0.0, -0.2]
+            bench.kept["act"]["thrust"], bench.e["plate_v"] = watch["thrust_max"][0], [0.0, 0.0, -0.2]
             return {"uav": STATION, "held": 0}
         case "arm_stale":
             bench.m["arm_tick"] = 990
@@ -304,6 +320,19 @@ def test_plate_sticks_where_the_arm_draws_back_and_a_force_stays(bench, change, 
 
 
 @pytest.mark.parametrize(
+    ("pull", "off", "found"),
+    [(-150.0, 700, "magnet_stuck"), (150.0, 700, "overload"), (-150.0, 0, "overload")],
+)
+def test_force_that_holds_the_arm_back_from_a_magnet_that_is_off_is_a_plate_that_sticks(bench, pull, off, found):
+    """Before the arm has come far, where any other force beyond its bound is an overload."""
+    kept = bench.kept["decide"]
+    bench.kept["act"]["magnet"], kept["seen"]["off"] = 0, off
+    kept["grip"] = bench.e["r"] + np.array([0.0, 0.0, 0.001])
+    bench.e["hinge_force"] = [0.0, 0.0, pull]
+    assert find(bench, 10, arm=BACK_OFF) == found
+
+
+@pytest.mark.parametrize(
     ("retreat", "gap", "age", "carried", "found"),
     [
         (0.07, 0.005, 0.1, 1, "magnet_stuck"),
@@ -338,14 +367,16 @@ def test_arm_far_from_its_reference_is_blocked_in_any_direction(bench, apart, fo
 @pytest.mark.parametrize(
     ("share", "sinks", "uav", "found"),
     [
-        (1.2, 0.2, STATION, "thrust_lost"),
-        # Told less than what carries it, or sinking slowly, it has lost nothing; nor where nobody asks it for its station.
-        (1.05, 0.2, STATION, "none"),
-        (1.2, 0.1, STATION, "none"),
-        (1.2, 0.2, AUTONOMOUS, "none"),
+        (1.2, 0.6, STATION, "thrust_lost"),
+        # Told less than what carries it, or sinking slowly, it has lost nothing.
+        (1.05, 0.6, STATION, "none"),
+        (1.2, 0.4, STATION, "none"),
+        # One that hovers by itself does not plunge.
+        (1.2, 0.6, AUTONOMOUS, "thrust_lost"),
+        (1.2, 0.4, AUTONOMOUS, "none"),
     ],
 )
-def test_uav_that_sinks_with_more_than_its_hover_thrust_has_lost_thrust(bench, share, sinks, uav, found):
+def test_uav_that_plunges_with_more_than_its_hover_thrust_has_lost_thrust(bench, share, sinks, uav, found):
     bench.kept["act"]["thrust"], bench.e["plate_v"] = share * weight(bench), [0.0, 0.0, -sinks]
     assert find(bench, LONG, held=0, uav=uav) == found
 
@@ -415,6 +446,15 @@ def test_plate_that_was_never_seen_is_not_missed(bench):
     assert find(bench, 10) == "camera_stale"
 
 
+@pytest.mark.parametrize(("seeks", "limit"), [(0, "camera_age"), (1, "search_age")])
+def test_uav_is_looked_for_longer_where_the_phase_says_so(bench, seeks, limit):
+    bench.enter(ALL)["seeks"] = seeks
+    bench.e["plate_age"] = 0.99 * bench.told["decide"]["watch"][limit][0]
+    assert find(bench, 10) == "none"
+    bench.e["plate_age"] = 1.01 * bench.told["decide"]["watch"][limit][0]
+    assert find(bench, 10) == "camera_stale"
+
+
 def test_coil_that_carries_nothing_is_a_fault_only_where_it_was_asked_to(bench):
     bench.m["magnet_fault"] = 1
     assert find(bench, 100) == "none"
@@ -449,3 +489,101 @@ def test_graver_fault_goes_before_the_other(bench):
     assert find(bench, 100) == "wrench_stale"
     bench.m["arm_tick"] = 0
     assert find(bench, 100) == "arm_stale"
+
+
+@pytest.mark.parametrize(
+    ("slides", "age", "force", "found"),
+    [
+        (2, 200, 0.0, "slip"),
+        (2, 200, 0.7, "none"),  # what is felt says that it is there
+        (1, 200, 0.0, "none"),  # a single image errs now and then
+        (2, 100, 0.0, "none"),  # the next image will say so
+    ],
+)
+def test_plate_that_slid_out_of_view_has_slipped(bench, slides, age, force, found):
+    """Where the rotors still carry the weight, a load that is not felt alone says nothing."""
+    known = bench.kept["estimate"]
+    known["grip_slides"], known["grip_tick"], bench.e["hinge_force"][0, 2] = slides, 1000 - age, force
+    assert find(bench, 100, expected=0.2) == found
+
+
+@pytest.mark.parametrize(
+    ("uplink", "downlink", "late", "arrived", "heard", "found"),
+    [
+        (0.11, 0.1, 100, 1000, 1000, "link_late"),
+        (0.09, 0.09, 90, 1000, 1000, "none"),
+        (0.05, 0.27, 270, 1000, 1000, "link_late"),
+        # Samples as old that do not come any more, or say that nothing was heard.
+        (0.05, 0.27, 270, 900, 1000, "uav_silent"),
+        (0.05, 0.27, 270, 1000, 400, "uav_silent"),
+    ],
+)
+def test_link_that_is_slow_is_told_from_one_that_is_dead(bench, uplink, downlink, late, arrived, heard, found):
+    bench.e["uplink"], bench.e["downlink"], bench.m["uav_tick"] = uplink, downlink, 1000 - late
+    bench.kept["estimate"]["arrived"], bench.m["uav_heard"] = arrived, min(heard, 1000 - late)
+    assert find(bench, debounce(bench, "link_late")) == found
+
+
+@pytest.mark.parametrize("gain", [0.0, -1.0, 0.5, 2.0])
+@pytest.mark.parametrize(
+    ("change", "found"),
+    [
+        ({}, "wrench_wrong"),
+        ({"near": 0.01}, "none"),  # the plate may touch
+        ({"sideways": 1.0}, "none"),  # the tool's weight has no part that way
+        ({"fast": 0.1}, "none"),  # something drives the arm
+        ({"slow": 1.0}, "none"),  # a zero that drifts, not a bridge that breaks
+    ],
+)
+def test_sensor_that_reads_another_tool_at_once_is_wrong(bench, gain, change, found):
+    """(g − 1) of the tool's weight, at once, on an arm that follows its reference and touches nothing."""
+    bench.e["plate"] = bench.e["r"] + [0.0, 0.0, change.get("near", 0.2)]
+    bench.e["v"][0, 0] = change.get("fast", 0.0)
+    ticks, rise = debounce(bench, "wrench_wrong") + 2, max(change.get("slow", 0.0), 1e-3)
+    for k in range(round(rise / 1e-3) + ticks):
+        leap = (gain - 1.0) * tool(bench) * min((k + 1) * 1e-3 / rise, 1.0) * (0.3 if "slow" in change else 1.0)
+        bench.e["hinge_force"] = [change.get("sideways", 0.0) * leap, 0.0, leap]
+        answer = find(bench, 1, ["wrench_wrong"], held=0, arm=MOVE)
+        if answer != "none":
+            break
+    assert answer == found
+
+
+@pytest.mark.parametrize(
+    ("reads", "arm", "found"),
+    [(0.0, HOLD, "wrench_wrong"), (0.2, HOLD, "none"), (-2.0, HOLD, "none"), (0.0, BACK_OFF, "none")],
+)
+def test_sensor_that_reads_nothing_at_all_is_dead(bench, reads, arm, found):
+    """Not even the tool; a plate that sticks pulls the arm that draws back through that reading."""
+    bench.m["wrench"][0, 2] = bench.kept["estimate"]["wrench"]["bias"][0, 2] = 1.3
+    bench.m["wrench"][0, 2] += reads * tool(bench)
+    assert find(bench, LONG, ["wrench_wrong"], arm=arm) == found
+
+
+@pytest.mark.parametrize(
+    ("thrust", "sinks", "known", "found"),
+    [
+        (1.0, 0.2, 1, "thrust_lost"),
+        (0.95, 0.2, 1, "none"),  # what its rotors can still make up for
+        (0.95, 0.6, 1, "thrust_lost"),
+        (1.0, 0.2, 0, "none"),  # a speed that nobody vouches for
+    ],
+)
+def test_uav_that_sinks_has_lost_thrust_where_it_has_no_more(bench, thrust, sinks, known, found):
+    bench.kept["act"]["thrust"] = thrust * bench.told["decide"]["watch"]["thrust_max"][0]
+    bench.e["plate_v"], bench.e["plate_valid"] = [0.0, 0.0, -sinks], known
+    assert find(bench, LONG, ["thrust_lost"], held=0, uav=STATION) == found
+
+
+@pytest.mark.parametrize(
+    ("loss", "retreat", "found"), [(0.0, 0.07, "magnet_stuck"), (0.25, 0.07, "none"), (0.25, 0.12, "thrust_short")]
+)
+def test_uav_that_lies_on_the_arm_is_told_from_a_plate_that_sticks(bench, loss, retreat, found):
+    """By F = m a + W (1 − f_T/T_h), which a loss makes larger by its share of the thrust; both follow the arm."""
+    kept, W = bench.kept["decide"], weight(bench)
+    kept["seen"]["off"], kept["seen"]["carried"], kept["retreat"] = 500, 1, retreat
+    bench.e["plate"], bench.e["plate_age"], bench.e["thrust"] = bench.e["r"], 0.05, 1.2 * W
+    bench.kept["refer"]["a"][0, 2] = -1.5
+    mass = bench.told["estimate"]["mass"][0]
+    bench.e["hinge_force"][0, 2] = -1.5 * mass + W - 1.2 * W * (1.0 - loss)
+    assert find(bench, LONG, ["magnet_stuck", "thrust_short"], held=0, arm=MOVE) == found

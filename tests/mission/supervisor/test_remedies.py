@@ -1,9 +1,13 @@
 """What a mission that was given up says: fault, what is so now, and what helps."""
 
+import numpy as np
+import pytest
+
 from armland.mission.registry import MISSIONS
 from armland.mission.supervisor.ends import FINALS, HINGED_FINALS
-from armland.mission.supervisor.remedies import REMEDIES, STANDING, stopped
+from armland.mission.supervisor.remedies import LEARNT, REMEDIES, STANDING, learnt_values, stopped
 from armland.mission.supervisor.table import FAULTS
+from armland.records import layout
 from armland.scenario import load_scenario
 
 
@@ -44,3 +48,38 @@ def test_time_out_says_what_was_missing():
     text = stopped("refused", "self_test", "none", "the arm holds still", MISSIONS["takeoff"].timeouts)
     assert "camera" in text
     assert "none" not in text
+
+
+def learnt(**values):
+    """What was learnt, with fields of the estimate set."""
+    estimate = np.zeros(1, layout("estimate", 7))
+    for name, value in values.items():
+        estimate[name] = value
+    return learnt_values(estimate[0])
+
+
+@pytest.mark.parametrize(
+    ("fault", "values", "words"),
+    [
+        ("camera_noise", {"camera_noise": 5.8}, "5.8 times"),
+        ("link_late", {"uplink": 0.12, "downlink": 0.09}, "120 ms up and 90 ms down"),
+        ("thrust_lost", {"hover": 6.9, "weight": 5.18}, "6.90 N was learnt to carry its 5.18 N"),
+        ("thrust_short", {"hover": 6.9, "weight": 5.18}, "6.90 N was learnt to carry its 5.18 N"),
+        (
+            "wrench_drift",
+            {"hinge_force": [3.0, 0.0, -4.0], "weight": 5.2},
+            "5.0 N were felt; the UAV's weight was learnt as 5.20 N",
+        ),
+        ("overload", {"hinge_force": [0.0, 0.0, 70.0]}, "70.0 N were felt"),
+    ],
+)
+def test_sentence_says_what_was_learnt_of_the_cause(fault, values, words):
+    assert fault in LEARNT
+    assert words in stopped("abort", "guide", fault, "so", {}, learnt(**values))
+    assert words not in stopped("abort", "guide", fault, "so", {})
+
+
+@pytest.mark.parametrize(("ratio", "said"), [(1.5, False), (3.0, True)])
+def test_time_out_says_that_the_camera_errs_where_it_does(ratio, said):
+    text = stopped("abort", "miss", "none", "so", MISSIONS["landing"].timeouts, learnt(camera_noise=ratio))
+    assert ("the camera errs 3.0 times what it claims" in text) == said

@@ -75,8 +75,8 @@ def test_no_end_lets_a_held_uav_go_without_its_thrust():
 def test_no_end_stops_a_flying_uav():
     for fault, row in FAULT_TABLE.items():
         end = next((p for p in FINALS if p.name == row["flight"]), None)
-        # One whose plate sticks does not fly: it stays on the arm with the thrust that it has.
-        flown_on = ("level", "on") if fault == "magnet_stuck" else ("autonomous", "off")
+        # One whose plate sticks, or that lies on the arm, does not fly: it stays there with the thrust that it has.
+        flown_on = ("level", "on") if fault in ("magnet_stuck", "thrust_short") else ("autonomous", "off")
         assert end is None or (end.uav, end.magnet) == flown_on, fault
 
 

@@ -23,7 +23,8 @@ def test_gain_and_offset_act_on_their_joint(bench):
     np.testing.assert_allclose(b.ctrl, [10.0, 9.0, 10.0, 10.0, 9.5, 10.0, 10.0])
 
 
-def test_joint_without_a_limit_in_its_file_has_none(bench, paper, tmp_path):
+def test_joint_without_a_limit_in_its_file_has_the_one_of_the_arms_rule(bench, landing_scenario, tmp_path):
+    from armland.models.arm import ArmModel
     from armland.models.description import ASSETS
 
     text = (ASSETS / "lwr4.xml").read_text("utf-8").replace(' actuatorfrcrange="-38 38"', "")
@@ -31,7 +32,9 @@ def test_joint_without_a_limit_in_its_file_has_none(bench, paper, tmp_path):
     b = bench(arm={"file": str(tmp_path / "arm.xml")})
     b.act(0, tau=np.full(7, 500.0))
     assert b.ctrl[0] == 176.0
-    assert (b.ctrl[5:] == 500.0).all()
+    ruled = ArmModel.load(tmp_path / "arm.xml", "flange", landing_scenario.tool).tau_max
+    np.testing.assert_allclose(b.ctrl, ruled)
+    assert (ruled[5:] < 38.0).all()
 
 
 @pytest.mark.parametrize("delay", [0, 1, 20])

@@ -16,6 +16,17 @@ def test_it_hovers_by_itself_where_it_was_met(waiting):
     assert np.linalg.norm(truth["v"]) < 0.05
 
 
+def test_told_to_it_hovers_a_step_aside(waiting):
+    """Along its own axes, which it believes turned against the world by up to 10 degrees."""
+    led = waiting()
+    led.step(1000)
+    start = led.tick.truth["r"][0].copy()
+    moved = led.step(6000, uav_step=[0.3, 0.0, 0.2])["truth"]["r"][-1] - start
+    assert np.linalg.norm(moved[:2]) == pytest.approx(0.3, abs=0.1)
+    assert moved[0] > 0.2
+    assert moved[2] == pytest.approx(0.2, abs=0.08)
+
+
 def test_guided_it_does_as_told(waiting):
     assert waiting().step(250, uav_mode=UavMode.GUIDED, thrust=3.0)["truth"]["v"][-1, 2] < -0.5
 

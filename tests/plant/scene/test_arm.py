@@ -32,7 +32,7 @@ def test_inertia_scale_makes_the_arm_heavier_and_not_the_uav(landing):
     plain, heavy = (build_scene(landing(arm={"inertia_scale": s}), "free").model for s in (1.0, 1.2))
     for model in (plain, heavy):
         assert model.body("uav/uav").mass[0] == pytest.approx(0.480)
-    for name in ("link_3", "armland_tool"):
+    for name in ("arm/link_3", "armland_tool"):
         np.testing.assert_allclose(heavy.body(name).mass, 1.2 * plain.body(name).mass)
         np.testing.assert_allclose(heavy.body(name).inertia, 1.2 * plain.body(name).inertia)
     np.testing.assert_allclose(heavy.dof_armature[:7], 1.2 * plain.dof_armature[:7])
@@ -44,7 +44,7 @@ def test_inertia_scale_of_a_hinged_uavs_arm_leaves_the_uav(paper):
     plain, heavy = (build_scene(paper(arm={"inertia_scale": s}), "hinged").model for s in (1.0, 1.2))
     np.testing.assert_array_equal(heavy.body("uav/uav").mass, plain.body("uav/uav").mass)
     np.testing.assert_array_equal(heavy.body("uav/uav").inertia, plain.body("uav/uav").inertia)
-    assert heavy.body("link_1").mass[0] == pytest.approx(1.2 * plain.body("link_1").mass[0])
+    assert heavy.body("arm/link_1").mass[0] == pytest.approx(1.2 * plain.body("arm/link_1").mass[0])
 
 
 def test_arm_file_may_bring_its_own_actuators_sensors_and_keyframes(paper, tmp_path):

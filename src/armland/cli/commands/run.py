@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from rich.console import Console
 
 from armland.cli import options
-from armland.cli.console import flights_told, phases_told, ready
+from armland.cli.commands.arm import tell_arm
+from armland.cli.console import diagnostics, flights_told, phases_told, ready
 from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
 
@@ -96,10 +97,13 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
     if not hinged and "deviation.level" not in loaded.own:
         # What all sources give, unless the user says otherwise: a demonstrator differs from what is believed of it. The log says so.
         loaded = options.load(name, {**given, "deviation": "published"}, hinged)
+    tell_arm(loaded, diagnostics())
     console = ready()
     from armland.experiments.episode import prepare
 
     flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))
+    if flight.moved:
+        console.print(f"place: {flight.moved}", highlight=False, markup=False, soft_wrap=True)
     (_campaign if given["seeds"] > 1 else _single)(flight, mission, given, console)
 
 

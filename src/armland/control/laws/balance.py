@@ -9,6 +9,9 @@
 | ξ | capture point, as an angle | 1 |
 | k_x, k_v, k_θ, k_ω | `BalanceGains` | 1/s², 1/s, m/s², m/s |
 | g | `gravity` | m/s² |
+| θ₀ | `upright`: θ at which nothing makes the body fall | 1 |
+| w, ŵ | θ̇ + ω₀² ẋ/g, and its estimate `carried` | 1/s |
+| p | `pole` of the observer | 1/s |
 
 About each horizontal axis (J + m l²) θ̈ = m g l θ − m l ẍ, so
 
@@ -23,6 +26,13 @@ has the gains of `control.design.balance`. The attitude arrives T late, carried 
 did since is known, and so, by (B.1),
 
     Δ = ω₀² (T θ_c − (ẋ(t) − ẋ(t − T))/g),  θ̇ ≈ θ̇(t − T) + Δ,  θ ≈ θ_c + ½ T Δ        (B.5)
+
+Where wind presses on the body, or its attitude is biased, it stands at θ₀ and not at 0: in all of the above θ − θ₀ stands for θ.
+By (B.1) w' = ω₀² (θ − θ₀), whatever the pivot does, so an observer of w finds θ₀ without a second derivative:
+
+    ŵ' = ω₀² (θ − θ₀) + 2p (w − ŵ),  θ₀' = −(p²/ω₀²) (w − ŵ)      (B.6)
+
+The error of θ₀ decays with both poles at −p. It begins with the angle at which the body hovered: that held against the wind, too.
 
 Assumptions: small angles, the same inertia about both axes, the body's spin about its z axis of no consequence.
 """
@@ -71,10 +81,19 @@ def lean_of(quat: Array, omega: Array) -> tuple[float, float, float, float]:
 
 
 @njit(cache=True)
-def capture_angle(quat: Array, omega: Array, rate: float) -> float:
-    """|ξ| of both axes together, 1, of quat (4,), D<-B, omega (3,), rad/s, body, and ω₀ = `rate`, rad/s. Source: (B.2)."""
+def capture_angle(quat: Array, omega: Array, rate: float, upright: Array) -> float:
+    """|ξ| of both axes together, 1, beyond θ₀ = `upright` (2,), 1.
+
+    Args:
+        quat: attitude (4,), scalar first, D<-B.
+        omega: angular velocity (3,), rad/s, body.
+        rate: ω₀, rad/s.
+        upright: θ₀ (2,), 1.
+
+    Source: (B.2).
+    """
     x, y, x_rate, y_rate = lean_of(quat, omega)
-    return float(np.hypot(x + x_rate / rate, y + y_rate / rate))  # (B.2)
+    return float(np.hypot(x - upright[0] + x_rate / rate, y - upright[1] + y_rate / rate))  # (B.2)
 
 
 @njit(cache=True)
@@ -95,6 +114,35 @@ def predicted(
     """
     change = rate * rate * (delay * tilt - gained / gravity)
     return tilt + 0.5 * delay * change, tilt_rate + change  # (B.5)
+
+
+@njit(cache=True)
+def observed(
+    upright: float, carried: float, tilt: float, w: float, step: float, rate: float, pole: float
+) -> tuple[float, float]:
+    """θ₀, 1, and ŵ, 1/s, one sample of the attitude further.
+
+    Args:
+        upright: θ₀ so far.
+        carried: ŵ so far.
+        tilt: θ when it was sampled.
+        w: by `falling` then, 1/s.
+        step: time since the sample before, s.
+        rate: ω₀, rad/s.
+        pole: p, 1/s.
+
+    Source: (B.6).
+    """
+    w2 = rate * rate
+    beyond = w - carried
+    carried += step * (w2 * (tilt - upright) + 2.0 * pole * beyond)
+    return upright - step * pole * pole / w2 * beyond, carried  # (B.6)
+
+
+@njit(cache=True)
+def falling(tilt_rate: float, speed: float, rate: float, gravity: float = STANDARD_GRAVITY) -> float:
+    """w = θ̇ + ω₀² ẋ/g, 1/s, at θ̇ = `tilt_rate`, 1/s, ẋ = `speed`, m/s, ω₀ = `rate`, rad/s, and g = `gravity`, m/s²."""
+    return tilt_rate + rate * rate * speed / gravity
 
 
 @njit(cache=True)

@@ -18,7 +18,9 @@ from armland.control.laws.impedance import orientation_pd
 from armland.control.laws.nullspace import null_space_wish
 from armland.control.laws.rigid_body import Gravity, UavParameters
 from armland.errors import ConfigurationError
+from armland.models import friction
 from armland.models.arm import ArmModel
+from armland.models.elbow import elbow
 from armland.models.operational import null_space_torque
 from armland.records import Record, Records
 from armland.rotations import Array, cross, turned
@@ -40,6 +42,8 @@ def told_layout(joints: int) -> np.dtype:
             ("range_stiffness", "f8"),  # N·m/rad
             ("q_min", "f8", (joints,)),  # rad
             ("q_max", "f8", (joints,)),  # rad
+            ("friction", "f8", (joints,)),  # N·m, that is made up for
+            ("damping", "f8", (joints,)),  # N·m·s/rad, likewise
         ]
     )
 
@@ -55,18 +59,19 @@ def told(scenario: Scenario, arm: ArmModel, R_d: Array) -> Records:
     p["elbow"], p["elbow_force"] = elbow_of(scenario, arm), c.elbow_force_n
     p["null_damping"], p["range_margin"] = c.null_space_damping_nms, c.range_margin_rad
     p["range_stiffness"], p["q_min"], p["q_max"] = c.range_stiffness_nm, arm.q_min, arm.q_max
+    p["friction"], p["damping"] = friction.known(arm.friction), friction.known(arm.damping)
     return p
 
 
 def elbow_of(scenario: Scenario, arm: ArmModel) -> int:
-    """Index of the elbow's joint: the one that `arm.elbow_joint` names, or the middle one.
+    """Index of the elbow's joint: the one that `arm.elbow_joint` names, or that `models.elbow` finds.
 
     Raises:
         ConfigurationError: the arm has no joint of that name; says which it has.
     """
     name = scenario.arm.elbow_joint
     if name is None:
-        return arm.joints // 2
+        return elbow(arm.model)
     if name not in arm.joint_names:
         raise ConfigurationError(
             f"arm.elbow_joint: the arm has no joint {name!r}; its joints are: {', '.join(arm.joint_names)}"
@@ -129,6 +134,7 @@ def arm_torque(
         for k in range(6):
             sum_ += arm.jacobian[k, i] * total[k]
         tau[i] = sum_  # (35)
+    friction.make_up(qd, p.friction, p.damping, tau)
 
 
 @njit(cache=True)

@@ -143,6 +143,29 @@ def carry(s: Record, mark: Record, tick: int, noise: Noise, tick_s: float) -> tu
 
 
 @njit(cache=True)
+def distance_of(y: Array, P: Array, R: Array) -> float:
+    """Squared Mahalanobis distance of an innovation, χ² with 3 degrees of freedom.
+
+    Args:
+        y: innovation (3,), m.
+        P: covariance (9, 9) of the state that it belongs to.
+        R: covariance (3, 3) of the sample, m².
+    """
+    S, L, out, u = np.empty((3, 3)), np.zeros((3, 3)), 0.0, np.empty(3)
+    for i in range(3):
+        for j in range(3):
+            S[i, j] = P[i, j] + R[i, j]
+    cholesky(S, L)
+    for i in range(3):
+        u[i] = y[i]
+        for j in range(i):
+            u[i] -= L[i, j] * u[j]
+        u[i] /= L[i, i]
+        out += u[i] ** 2
+    return out
+
+
+@njit(cache=True)
 def correct(x: Array, P: Array, z: Array, R: Array, gate: float) -> float:
     """Fuse what is seen of the first three elements of a state, unless its squared distance exceeds `gate`.
 

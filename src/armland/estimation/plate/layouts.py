@@ -55,9 +55,13 @@ def kept_layout() -> np.dtype:
             ("camera_position", "f8", (RING, 3)),  # m, D
             ("camera_quat", "f8", (RING, 4)),  # D<-camera
             ("first_tick", "i8"),
-            ("fused", "i8"),  # samples that were fused since it began
+            ("fused", "i8"),  # samples that were fused since it began, or began anew
             ("leapt", "i8"),  # tick at which the marker was last found far from where it had just been
             ("noise", "f8"),  # real variance of the camera over the claimed one, by what is seen; 0: not yet begun
+            ("scattered", "i8"),  # samples since the last one that was believed that are far from the one before
+            ("innovation", "f8", (3,)),  # m, D, of the last sample
+            ("turn", "f8", (3,)),  # rad, D, of the last sample's attitude
+            ("compared", "i8"),  # 1 where there is one
             ("imu_tick", "i8"),
             ("rate", "f8", (3,)),  # rad/s, body
             ("align", ALIGNMENT),

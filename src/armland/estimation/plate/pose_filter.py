@@ -19,6 +19,7 @@ from numba import njit
 from armland.estimation.plate import alignment
 from armland.estimation.plate.late_fusion import RING, Noise, carry, correct, insert, place, replay, spread
 from armland.estimation.plate.reckoning import present
+from armland.estimation.plate.scatter import SETTLED, compare, learn_scatter, turned
 from armland.records import Record
 from armland.rotations import Array, conjugate, cross, from_rotation_vector, matrix, multiply, skew
 
@@ -26,11 +27,12 @@ LEAP_M, LEAP_S = 0.06, 0.3
 """A marker that is found so far from where it is expected, so soon after it was seen, is another one, or nothing that flies: in that
 time a UAV at its largest tilt comes 0.13 m, and the filter knows most of it."""
 
-SETTLED = 15
-"""Samples after which the filter knows velocity and attitude well enough to call anything a leap."""
+FORGOTTEN_S = 0.5
+"""Time without a sample after which the filter begins anew: the gust that it knew may be over, and the UAV, told to hover by its own
+means by then, is nearly at rest."""
 
-NOISE_GAIN, FAR_RATIO, NOISE_MAX = 0.05, 4.0, 36.0
-"""Share by which one sample changes the learnt noise; distance over its mean at which more says no more; largest variance ratio."""
+SCATTER_TIMES = 3
+"""By how many times later the filter begins anew where images scatter."""
 
 FUSED, STARTED, RESTARTED, REPEATED, UNUSABLE, GATED = 0, 1, 2, 3, 4, 5
 """What `fuse` did: fused; first sample; began anew after too many gated ones; image frozen; stamp or number that cannot be
@@ -57,10 +59,11 @@ def fuse(m: Record, p: Record, s: Record) -> int:
         return UNUSABLE
     if _repeats(m, s):
         return REPEATED
-    if s.track.marks == 0:
-        _start(m, True, np.zeros(9), p, s)
-        return STARTED
-    capture = m.camera_capture
+    capture, first = m.camera_capture, s.track.marks == 0
+    if first or (capture - s.sample_tick) * p.tick_s > FORGOTTEN_S:
+        _start(m, first, np.zeros(9), p, s)
+        s.fused = 0
+        return STARTED if first else RESTARTED
     at = place(s.track, capture)
     if at == 0 or s.track.mark[at - 1].tick <= s.track.tick - RING + 1:
         return UNUSABLE
@@ -68,43 +71,45 @@ def fuse(m: Record, p: Record, s: Record) -> int:
     x, P = carry(s.track, s.track.mark[at - 1], capture, noise, p.tick_s)
     predicted = x.copy()
     z, R, R_theta = _resolve(m, p, s)
+    scatter = compare(z, x, P, R, s)
     s.distance[0] = correct(x, P, z, R, p.gate)
     near = s.distance[0] <= p.gate
-    learn_noise(s.distance[0], s)
     theta = alignment.residual(_attitude_seen(m, p, s), multiply(s.align.quat, s.quat[capture % RING]))
     gate = p.gate if near else -1.0
     s.distance[1] = alignment.correct(s.align, capture, theta, R_theta, p.align_walk, gate, p.tick_s)
     upright = s.distance[1] <= p.gate
-    if near and upright:
+    learn_scatter(scatter, turned(theta, R_theta, s), upright, s)
+    s.gated = 0 if near and upright else s.gated + 1
+    # One that is alike time and again is to be believed; scatter is noise that has yet to be learnt, unless that never ends: then
+    # what was expected is wrong.
+    scatters = s.scattered > 1 and s.gated < SCATTER_TIMES * p.restart_after
+    again = s.gated >= p.restart_after
+    if near and (upright or scatters or again):
+        # Where only the attitude is not as expected, velocity and disturbance stay known.
+        if not (upright or scatters):
+            _align(m, p, s)
         replay(s.track, insert(s.track, at, capture, x, P, z, R, True), noise, p.tick_s)
         s.gated, s.sample_tick = 0, max(s.sample_tick, capture)
-        s.fused += 1
-        return FUSED
-    s.gated += 1
-    if s.gated < p.restart_after:
+        s.scattered, s.fused = 0 if upright else s.scattered, s.fused + 1
+        return FUSED if upright else RESTARTED
+    if scatters or not again:
         return GATED
-    recent = s.fused >= SETTLED and (capture - s.sample_tick) * p.tick_s < LEAP_S
-    if not near and recent and _apart(z, predicted) > LEAP_M:
-        s.leapt = s.track.tick
-    _start(m, not upright, predicted, p, s)
+    _begin_anew(m, z, predicted, not upright, p, s)
     return RESTARTED
+
+
+@njit(cache=True)
+def _begin_anew(m: Record, z: Array, predicted: Array, anew: bool, p: Record, s: Record) -> None:
+    recent = (m.camera_capture - s.sample_tick) * p.tick_s < LEAP_S
+    if recent and s.fused >= SETTLED and _apart(z, predicted) > LEAP_M:
+        s.leapt = s.track.tick
+    _start(m, anew, predicted, p, s)
+    s.fused = s.scattered = 0
 
 
 @njit(cache=True)
 def _apart(a: Array, b: Array) -> float:
     return float(np.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2))
-
-
-@njit(cache=True)
-def learn_noise(distance: float, s: Record) -> None:
-    """Learn by how much the camera's noise exceeds what it claims: then its normalised innovations squared exceed their mean of 3.
-
-    Args:
-        distance: squared Mahalanobis distance of a sample, 3 degrees of freedom. One that is far off may be an outlier.
-        s: of `layouts.kept_layout`; `noise` is updated. A camera that errs less than it claims gains nothing.
-    """
-    s.noise *= np.exp(NOISE_GAIN * (min(distance / 3.0, FAR_RATIO) - 1.0))
-    s.noise = min(max(s.noise, 1.0), NOISE_MAX)
 
 
 @njit(cache=True)
@@ -158,12 +163,17 @@ def _attitude_seen(m: Record, p: Record, s: Record) -> Array:
 
 
 @njit(cache=True)
+def _align(m: Record, p: Record, s: Record) -> None:
+    # The alignment anew, from this sample.
+    heading, row = np.sqrt(m.camera_sigma[5] ** 2 + p.sigma_attitude**2), m.camera_capture % RING
+    alignment.begin(s.align, m.camera_capture, _attitude_seen(m, p, s), s.quat[row], p.tilt_prior, heading)
+
+
+@njit(cache=True)
 def _start(m: Record, anew: bool, x: Array, p: Record, s: Record) -> None:
     # Position as seen; velocity and bias as in x (9,), but hardly trusted; the alignment anew, or as it is.
-    row = m.camera_capture % RING
     if anew:
-        heading = np.sqrt(m.camera_sigma[5] ** 2 + p.sigma_attitude**2)
-        alignment.begin(s.align, m.camera_capture, _attitude_seen(m, p, s), s.quat[row], p.tilt_prior, heading)
+        _align(m, p, s)
     z, R, _ = _resolve(m, p, s)
     P = np.zeros((9, 9))
     for i in range(3):
@@ -171,7 +181,7 @@ def _start(m: Record, anew: bool, x: Array, p: Record, s: Record) -> None:
         for k in range(3):
             P[i, k] = R[i, k]
         P[3 + i, 3 + i], P[6 + i, 6 + i] = p.speed_prior**2, p.bias_prior**2
-    s.track.marks = s.gated = 0
+    s.track.marks = s.gated = s.compared = 0
     insert(s.track, 0, m.camera_capture, x, P, z, R, True)
     s.sample_tick = m.camera_capture
 

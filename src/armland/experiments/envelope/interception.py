@@ -111,11 +111,11 @@ def limits(arm: ArmModel, home: Array, scenario: Scenario, omega: float, missed:
     M, J = arm.mass_matrix, arm.jacobian
     per_speed = np.linalg.solve(M, J.T @ arm.lambda_ee)[:, 0]
     per_acceleration = J.T @ arm.lambda_ee[:, 0]
-    rated = np.resize(scenario.arm.joint_speed_rad_s, arm.joints)
+    rate = arm.torque_rate if v.torque_rate_nm_s is None else np.full(arm.joints, v.torque_rate_nm_s)
     with np.errstate(divide="ignore"):
-        speed = np.min(v.joint_speed_share * rated / np.abs(per_speed))
+        speed = np.min(v.joint_speed_share * arm.qd_max / np.abs(per_speed))
         acceleration = np.min((arm.tau_max - np.abs(arm.gravity)) / np.abs(per_acceleration))
-        jerk = np.min(v.torque_rate_nm_s / np.abs(per_acceleration))
+        jerk = np.min(rate / np.abs(per_acceleration))
     return {
         "offset": b.align_offset_m / missed,
         "relative speed": b.align_speed_mps / (omega * missed),

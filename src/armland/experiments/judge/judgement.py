@@ -14,7 +14,7 @@ from armland.experiments.judge.figures import MEASURES, NAMES, Figures
 from armland.experiments.judge.limits import Excess, excesses, held_figures
 from armland.experiments.judge.limits import in_words as exceeded_in_words
 from armland.experiments.judge.whereabouts import in_words, state_of
-from armland.mission.supervisor.remedies import stopped
+from armland.mission.supervisor.remedies import learnt_values, stopped
 from armland.mission.table.mission import Criterion, Mission
 
 
@@ -165,7 +165,9 @@ def _stopped(ticks: Ticks, brief: Brief, end: str) -> str:
     if end not in brief.finals:
         return f"still in phase {end} when the time was over: {now}"
     fault = brief.faults[int(ticks["mission"]["fault"][-1])]
-    return stopped(end, last_flown(ticks, brief), fault, now, brief.timeouts)
+    # As it was when the fault was found: what is learnt after the end says nothing of its cause.
+    found = int(np.argmax(ticks["mission"]["fault"] == ticks["mission"]["fault"][-1])) if fault != "none" else -1
+    return stopped(end, last_flown(ticks, brief), fault, now, brief.timeouts, learnt_values(ticks["estimate"][found]))
 
 
 def _exceeded(brief: Brief, figures: dict[str, Figures]) -> Iterator[str]:

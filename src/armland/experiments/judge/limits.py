@@ -40,7 +40,7 @@ def excesses(ticks: Ticks, brief: Brief) -> dict[str, Excess]:
     | `joint_position` | `q_min`, `q_max` (n,), rad | `truth.q` |
     | `joint_speed` | `qd_max` (n,), rad/s | how far `truth.q` moved in a tick |
     | `joint_torque` | `tau_max` (n,), N·m | `truth.tau`, which acted |
-    | `torque_rate` | `torque_rate`, N·m/s | `command.tau`, which was sent |
+    | `torque_rate` | `torque_rate` (n,) or for all, N·m/s | `command.tau`, which was sent |
     | `singularity` | `sigma_min`, 1 | the Jacobian at `truth.q` |
     | `hinge_force` | `hinge_max`, N | `truth.hinge_force` |
     | `magnet_pull`, `magnet_shear` | `brief.hold` | see `grip` |
@@ -82,7 +82,7 @@ def _states(ticks: Ticks, brief: Brief) -> dict[str, Excess]:
     truth, k = ticks["truth"], len(ticks["truth"])
     most, least = defaultdict(lambda: np.inf, brief.limits), defaultdict(lambda: -np.inf, brief.limits)
     q, force = truth["q"], np.linalg.norm(truth["hinge_force"], axis=1)
-    qd, rate = _rates(q, brief), np.abs(_rates(ticks["command"]["tau"], brief)).max(axis=1)
+    qd, rate = _rates(q, brief), np.abs(_rates(ticks["command"]["tau"], brief))
     singular = np.zeros(k, bool)
     if "sigma_min" in brief.limits:
         seen = smallest_singular_values(q[::SINGULAR_TICKS], brief.screws)
@@ -91,7 +91,7 @@ def _states(ticks: Ticks, brief: Brief) -> dict[str, Excess]:
         "joint_position": Excess(((q < least["q_min"]) | (q > most["q_max"])).any(axis=1)),
         "joint_speed": Excess((np.abs(qd) > most["qd_max"]).any(axis=1)),
         "joint_torque": Excess((np.abs(truth["tau"]) > most["tau_max"] * (1.0 + 1e-9)).any(axis=1)),
-        "torque_rate": Excess(rate > most["torque_rate"] * 1.001, rate, "N·m/s"),
+        "torque_rate": Excess((rate > most["torque_rate"] * 1.001).any(axis=1), rate.max(axis=1), "N·m/s"),
         "singularity": Excess(singular),
         "hinge_force": Excess(force > most["hinge_max"], force, "N"),
     }

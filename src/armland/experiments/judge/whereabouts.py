@@ -14,6 +14,8 @@ FALL_MPS = 1.2  # Faster than this downwards is a fall: from 7 cm
 STILL_MPS, CARRIED_N, LOW_M = 0.05, 1.0, 0.6
 """Speed of what rests; force on the rails of a UAV that stands; pivot height below which nothing flies."""
 
+BALANCED_MPS = 0.3  # Speed up to which an arm moves a UAV that it holds: one that it balances in gusts
+
 ARM_REST_M = 0.002  # Displacement of the end effector in the last quarter of a second within which the arm is at rest
 
 
@@ -35,7 +37,7 @@ def state_of(ticks: Ticks, brief: Brief) -> str:
         return "standing"
     # One that has toppled over its hinge is not held, even where the magnet grips; least of all one that lies on the arm.
     toppled = late["foul"][:, 2].any() or tilt > LEANING_DEG
-    if speed < STILL_MPS and late["touching"].min() == 4 and not toppled:
+    if speed < BALANCED_MPS and late["touching"].min() == 4 and not toppled:
         return "held"
     allowed = max(FLYING_SPEED_MPS, 0.25 + float(np.linalg.norm(brief.given)))
     if late["r"][:, 2].min() > LOW_M and speed < allowed and tilt < TOPPLED_DEG:

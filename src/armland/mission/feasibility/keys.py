@@ -1,14 +1,7 @@
-"""Refuses keys of a scenario that the mission does not use, and values that do not fit the arm."""
-
-import numpy as np
+"""Refuses keys of a scenario that the mission does not use."""
 
 from armland.errors import ConfigurationError
 from armland.mission.table.mission import Mission
-from armland.models.arm import ArmModel
-from armland.rotations import Array
-from armland.scenario import Scenario
-
-SPEEDS = "arm.joint_speed_rad_s"
 
 
 def check_keys(own: frozenset[str], mission: Mission) -> None:
@@ -35,18 +28,3 @@ def _instead(path: str, uses: tuple[str, ...]) -> str:
     table = path.removeprefix("belief.").partition(".")[0]
     near = sorted(u for u in uses if u.startswith(f"{table}."))
     return f"; of [{table}] it uses {', '.join(u.removeprefix(f'{table}.') for u in near)}" if near else ""
-
-
-def joint_speeds(scenario: Scenario, own: frozenset[str], arm: ArmModel) -> Array:
-    """Rated speed (n,), rad/s, of each joint; the default's values are repeated for an arm of another number of joints.
-
-    Raises:
-        ConfigurationError: the user gave another number of values.
-    """
-    speeds = scenario.arm.joint_speed_rad_s
-    if len(speeds) != arm.joints and SPEEDS in own:
-        raise ConfigurationError(
-            f"{SPEEDS} has {len(speeds)} value{'s' * (len(speeds) != 1)}; the arm has {arm.joints} joints: "
-            f"{', '.join(arm.joint_names)}"
-        )
-    return np.resize(np.array(speeds), arm.joints)

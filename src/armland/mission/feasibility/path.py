@@ -33,13 +33,18 @@ def survey_path(arm: ArmModel, scenario: Scenario) -> Workplace:
     """Find a home pose from which the arm can follow the whole path of a believed scenario; the arm's state is overwritten.
 
     Raises:
-        ConfigurationError: unknown elbow joint, home of the wrong length, no path, path outside the workspace.
+        WorkspaceError: a start or a path outside the workspace.
+        ConfigurationError: unknown elbow joint, home of the wrong length, no path.
     """
     trajectory = path_of(scenario)
     elbow, near = elbow_of(scenario, arm), _near(scenario, arm)
     start = None if trajectory.start_m is None else np.array(trajectory.start_m)
     refusal: WorkspaceError | None = None
-    for pose in home_poses(arm, start, near, elbow)[:CANDIDATES]:
+    try:
+        homes = home_poses(arm, start, near, elbow)[:CANDIDATES]
+    except WorkspaceError as e:
+        raise WorkspaceError(f"{e}; change trajectory.start_m or set arm.home_rad") from e
+    for pose in homes:
         try:
             return _workplace(scenario, arm, pose.q)
         except WorkspaceError as e:

@@ -1,10 +1,14 @@
 """Where a mission of way points takes the arm: the pose from which it begins, whether it can go there, carry, and follow the UAV."""
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
+from armland.control.laws.realisation import elbow_of
 from armland.errors import ConfigurationError, WorkspaceError
+from armland.mission.feasibility.obstacles import Obstacles
+from armland.mission.feasibility.way import Stop, check_clear, stops
 from armland.mission.table.mission import At, Mission
 from armland.mission.table.phases import Phase
 from armland.models.arm import ArmModel
@@ -14,6 +18,9 @@ from armland.scenario import Scenario
 
 BRANCHES, MARGIN_RAD = 16, 0.2
 """Where no home is given: poses that are tried at most, and the distance to all joints' ends that is good enough."""
+
+CLEAR_EVERY = 4
+"""Of the points of the path, those at which the arm must be clear of what is around."""
 
 STEPS = 4
 """Points from the catch to each end of the box about it in which the arm follows the UAV."""
@@ -31,7 +38,9 @@ def targets(mission: Mission, phases: tuple[Phase, ...], scenario: Scenario) -> 
     return np.array([point(mission.targets.get(p.name, At("catch_m")), scenario) for p in phases])
 
 
-def survey(arm: ArmModel, scenario: Scenario, mission: Mission, weight: float) -> Array:
+def survey(
+    arm: ArmModel, scenario: Scenario, mission: Mission, weight: float, obstacles: Obstacles | None = None
+) -> Array:
     """Joint positions (n,) rad at the mission's first way point.
 
     Args:
@@ -39,41 +48,94 @@ def survey(arm: ArmModel, scenario: Scenario, mission: Mission, weight: float) -
         scenario: believed.
         mission: one with way points.
         weight: of all that flies, N.
+        obstacles: what is around the scenario's arm; made here if absent.
 
     Raises:
-        WorkspaceError: a way point, or where the arm follows the UAV, out of reach.
-        ConfigurationError: joint torques beyond their limits; a home of the wrong length.
+        WorkspaceError: a way point, or where the arm follows the UAV, out of reach; joint torques beyond their limits; a pose on the
+            way in which the arm comes too near to floor, cradle, UAV or itself.
+        ConfigurationError: a home of the wrong length.
     """
     points = [point(at, scenario) for at in mission.points(scenario)]
     fine = np.concatenate([np.linspace(a, b, 20) for a, b in pairwise(points)])
-    best, widest, refusal = np.zeros(arm.joints), -np.inf, WorkspaceError("")
+    around = Obstacles(scenario) if obstacles is None else obstacles
+    around.put_cradle(np.array(scenario.place.put_down_m), scenario.cradle.heading_deg)
+    way = Way(scenario, mission, weight, fine, stops(fine[::CLEAR_EVERY], scenario, mission.start), around)
+    best, widest, refusal = np.zeros(arm.joints), -np.inf, _Refusal(-1, WorkspaceError(""))
     for start in _starts(arm, scenario):
         # From the pose that is known the arm is led to the first way point: no other branch of the kinematics comes in.
         q = lead(arm, start, points[0], 25)
-        try:
-            margin = check_path(arm, q, UPRIGHT, fine)
-        except WorkspaceError as e:
-            refusal = e
+        margin, found = _tried(arm, q, way)
+        if found is not None:
+            refusal = max(refusal, found, key=lambda r: r.stage)
             continue
         if margin > widest:
             best, widest = q, margin
         if margin > MARGIN_RAD:
             break
     if widest < 0.0:
-        raise WorkspaceError(
-            f"the arm cannot follow the {mission.name}'s path: {refusal}; the path is given by place.catch_m = "
-            f"{scenario.place.catch_m}, put_down_m = {scenario.place.put_down_m}, wait_below_m, above_m and withdraw_m"
-        ) from refusal
-    _check_torque(arm, best, fine, weight)
-    if mission.start == "air":
-        check_tracking(arm, best, scenario)
+        raise refusal.error
     return best
+
+
+class Way(NamedTuple):
+    """What is asked of an arm."""
+
+    scenario: Scenario
+    mission: Mission
+    weight: float  # N
+    fine: Array  # (k, 3) m
+    stops: list[Stop]
+    obstacles: Obstacles
+
+
+class _Refusal(NamedTuple):
+    stage: int  # How far the arm came: of several refusals the one of the pose that came farthest is told
+    error: WorkspaceError
+
+
+def _tried(arm: ArmModel, q: Array, way: Way) -> tuple[float, _Refusal | None]:
+    # Smallest margin to the joints' ends on the path from a pose, or what refuses it.
+    scenario, name, stage = way.scenario, way.mission.name, 0
+    try:
+        margin = _on_path(arm, q, way)
+        stage = 1
+        _check_torque(arm, q, way.fine, way.weight)
+        try:
+            check_clear(arm, q, way.stops, scenario, way.obstacles)
+        except WorkspaceError as e:
+            # What is out of reach is told before what is too near.
+            stage = 2
+            if way.mission.start == "air":
+                check_tracking(arm, q, scenario)
+            stage = 3
+            raise WorkspaceError(f"the arm cannot do the {name} with {_places(scenario)}: {e}") from e
+        stage = 2
+        if way.mission.start == "air":
+            check_tracking(arm, q, scenario)
+    except WorkspaceError as e:
+        return -np.inf, _Refusal(stage, e)
+    return margin, None
+
+
+def _on_path(arm: ArmModel, q: Array, way: Way) -> float:
+    try:
+        return check_path(arm, q, UPRIGHT, way.fine)
+    except WorkspaceError as e:
+        raise WorkspaceError(
+            f"the arm cannot follow the {way.mission.name}'s path: {e}; the path is given by {_places(way.scenario)}, wait_below_m, "
+            "above_m and withdraw_m"
+        ) from e
+
+
+def _places(scenario: Scenario) -> str:
+    return f"place.catch_m = {scenario.place.catch_m}, put_down_m = {scenario.place.put_down_m}"
 
 
 def _starts(arm: ArmModel, scenario: Scenario) -> list[Array]:
     home = scenario.place.home_deg
     if home is None:
-        return [p.q for p in home_poses(arm, np.array(scenario.place.catch_m), None, arm.joints // 2)[:BRANCHES]]
+        at = np.array(scenario.place.catch_m)
+        return [p.q for p in home_poses(arm, at, None, elbow_of(scenario, arm))[:BRANCHES]]
     if len(home) != arm.joints:
         raise ConfigurationError(f"place.home_deg has {len(home)} values; the arm has {arm.joints} joints")
     return [np.deg2rad(home)]
@@ -86,7 +148,7 @@ def _check_torque(arm: ArmModel, q: Array, points: Array, weight: float) -> None
         needed = np.abs(arm.gravity + 1.5 * weight * arm.jacobian[2])
         worst = int((needed / arm.tau_max).argmax())
         if needed[worst] > 0.9 * arm.tau_max[worst]:
-            raise ConfigurationError(
+            raise WorkspaceError(
                 f"joint {arm.joint_names[worst]} would need {needed[worst]:.0f} N·m to carry a UAV of {weight:.1f} N at "
                 f"({', '.join(f'{x:.2f}' for x in place)}) m; 0.9 of its limit is {0.9 * arm.tau_max[worst]:.0f} N·m"
             )

@@ -36,8 +36,8 @@ RESTING: dict[str, Any] = {"kind": "cradle", "arm": "yield", "on_cradle": True, 
 
 PHASES = (
     Phase("self_test", **TESTED, uav="autonomous").to("guide", READY, 0.2),
-    Phase("guide", arm="hold", uav="station", free=True, timeout_s=12.0).to(
-        "approach", "uav_error < uav_error_m, uav_speed < uav_speed_mps", 0.2
+    Phase("guide", arm="hold", uav="station", free=True, seeks=True, timeout_s=20.0).to(
+        "approach", "uav_error < uav_error_m, uav_speed < uav_speed_mps, uav_seen > half", 0.2
     ),
     Phase("approach", arm="join", uav="station", free=True, duration_s=1.5, timeout_s=4.0, on_timeout="miss")
     .to("align", "progress > almost_one, uav_seen > half")
@@ -55,7 +55,8 @@ PHASES = (
     .to("miss", "uav_seen < half", 0.2),
     # Until the arm carries, a UAV without link flies by itself.
     Phase("capture", **TOUCHING, arm="hold", uav="ramp", share="test", held=True, link="caught")
-    .to("miss", "gap > let_go_m", 0.02)
+    # A UAV that falls onto the magnet is lower than is reckoned, and is reckoned to bounce: what is felt or seen says that it is there.
+    .to("miss", "gap > let_go_m, image_gap > let_go_m, contact < half", 0.02)
     # A tilted UAV that the magnet holds goes nowhere, but is reckoned to; a stray image moves no estimate: both must say so.
     .to("miss", "offset > slipped_m, image_offset > slipped_m", 0.05)
     .to("hand_over", "pull > pull_seen_n, elapsed > settled_s", 0.1),
@@ -75,7 +76,7 @@ PHASES = (
         "done", "progress > almost_one, retreat > retreat_m, contact < half", 0.1
     ),
     # Down to where it sees the UAV well: close by, a gust takes it out of the camera's view.
-    Phase("miss", arm="move", uav="station", duration_s=1.2, timeout_s=4.0)
+    Phase("miss", arm="move", uav="station", seeks=True, duration_s=1.2, timeout_s=12.0)
     .to("abort", "retries > retries_allowed")
     .to("guide", "progress > almost_one, uav_seen > half", 0.1),
     *FINALS,
@@ -126,5 +127,6 @@ LANDING = Mission(
 `place.standoff_m` below its plate and closes the gap when offset, speed and tilt allow; the magnet grips. A pull of the rotors
 tests the grip, then the thrust ramps down while the arm takes the weight over. The arm carries the UAV above the cradle and sets
 it down; the rotors stop when the rails carry, the magnet opens when the hinge is free of force, and the arm draws back.
-A capture that is missed is tried again `bounds.retries` times.""",
+A capture that is missed is tried again `bounds.retries` times. A UAV that leaves the camera's view before is looked
+for as long as `limits.search_ms`.""",
 )

@@ -17,8 +17,9 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from armland.control.laws.balance import BalanceGains, capture_angle, lean_of, predicted, push
+from armland.control.laws.balance import BalanceGains, capture_angle, falling, lean_of, observed, predicted, push
 from armland.records import Record
+from armland.rotations import Array
 
 RING = 256
 """Ticks of the pivot's velocity that are remembered, to know what it gained since an attitude was measured."""
@@ -30,6 +31,15 @@ SEAT_M = 0.0005
 """How far below the rails it is set down: the arm's stiffness then presses it on."""
 
 BALANCED, SETTLED, GIVEN_UP = 0, 1, 2
+
+OBSERVED = 1.0
+"""Poles of the observer of what is upright, over −ω₀: slower than those that right the body, faster than those that bring it back."""
+
+OBSERVED_AFTER_S = 0.12
+"""When observing begins: what the rotors still give while they run down is no wind."""
+
+UPRIGHT_MOST = 0.15
+"""Largest tilt, 1, that counts as upright: 9°, the lean in a wind of 3 m/s."""
 
 
 @lru_cache
@@ -47,6 +57,7 @@ def told_layout() -> np.dtype:
             ("down", "f8"),  # m, height of the pivot when the UAV stands on the cradle
             ("lost", "f8"),  # rad, capture point beyond which it cannot be balanced
             ("settle", "f8"),  # m, height above it below which a UAV is set down and not balanced
+            ("gravity", "f8"),  # m/s²
         ]
     )
 
@@ -61,6 +72,9 @@ def kept_layout() -> np.dtype:
             ("sway_v", "f8", (2,)),  # m/s
             ("sway_a", "f8", (2,)),  # m/s²
             ("sway_log", "f8", (RING, 2)),  # m/s, the pivot's velocity
+            ("upright", "f8", (2,)),  # 1, tilt at which it would stand
+            ("carried", "f8", (2,)),  # 1/s, what the observer of that carries on
+            ("sampled", "i8"),  # tick of the attitude that was observed last
             ("lean", "f8", (3,)),  # rad [D]
             ("lean_v", "f8", (3,)),  # rad/s
             ("lean_a", "f8", (3,)),  # rad/s²
@@ -69,16 +83,19 @@ def kept_layout() -> np.dtype:
 
 
 @njit(cache=True)
-def begin_balance(e: Record, p: Record, s: Record) -> None:
+def begin_balance(e: Record, hovered: Array, p: Record, s: Record) -> None:
     """Anchor the pivot where it is, with the speed it has; decide whether the rails are near enough to be set down on.
 
     Args:
         e: estimate.
+        hovered: acceleration (2,), m/s², D, that held the UAV against the wind while it hovered.
         p: `told_layout`.
         s: `kept_layout`, written.
     """
     s.state = SETTLED if e.r[2] - p.down < p.settle else BALANCED
+    s.sampled = -1
     for i in range(2):
+        s.upright[i] = min(max(hovered[i] / p.gravity, -UPRIGHT_MOST), UPRIGHT_MOST)
         s.sway[i], s.sway_v[i], s.sway_a[i] = 0.0, e.v[i], 0.0
         for k in range(RING):
             s.sway_log[k, i] = e.v[i]
@@ -99,17 +116,23 @@ def refer_balance(elapsed: float, age: int, e: Record, told: Record, kept: Recor
         r: reference, written.
     """
     p, s = told.balance, kept.balance
-    if s.state == BALANCED and capture_angle(e.quat, e.omega, p.fall_rate) > p.lost:
+    x, y, x_rate, y_rate = lean_of(e.quat, e.omega)
+    if s.state == BALANCED and capture_angle(e.quat, e.omega, p.fall_rate, s.upright) > p.lost:
         # It falls, whatever the arm does: less is broken if that rests.
         s.state = GIVEN_UP
     if s.state == SETTLED:
         _settle(elapsed, p.down, told.coast, kept, r)
-    x, y, x_rate, y_rate = lean_of(e.quat, e.omega)
+    since = e.tick - age - s.sampled
     for i in range(2):
         tilt, tilt_rate = (x, x_rate) if i == 0 else (y, y_rate)
-        _sway(i, tilt, tilt_rate, age, e.tick, told, s)
+        s.sway_log[e.tick % RING, i] = s.sway_v[i]
+        if elapsed > OBSERVED_AFTER_S and age <= p.attitude_age and since > 0:
+            _observe(i, tilt - tilt_rate * age * told.tick_s, tilt_rate, since, age, e.tick, told, s)
+        _sway(i, tilt - s.upright[i], tilt_rate, age, e.tick, told, s)
         r.r[i], r.v[i], r.a[i] = kept.r0[i] + s.sway[i], s.sway_v[i], s.sway_a[i]
         _lean(i, p, s)
+    if elapsed > OBSERVED_AFTER_S:
+        s.sampled = max(s.sampled, e.tick - age)
     for i in range(2):
         # On a circle about the wrist the pivot sinks.
         r.r[2] -= 0.5 * p.wrist * s.lean[i] ** 2
@@ -118,10 +141,22 @@ def refer_balance(elapsed: float, age: int, e: Record, told: Record, kept: Recor
 
 
 @njit(cache=True)
+def _observe(i: int, tilt: float, tilt_rate: float, since: int, age: int, tick: int, told: Record, s: Record) -> None:
+    # What is upright along axis i, by an attitude as it was sampled `age` ticks ago, `since` ticks after the one before.
+    p = told.balance
+    w = falling(tilt_rate, s.sway_log[(tick - age) % RING, i], p.fall_rate, p.gravity)
+    if s.sampled < 0:
+        s.carried[i] = w
+        return
+    pole, step = OBSERVED * p.fall_rate, since * told.tick_s
+    found, s.carried[i] = observed(s.upright[i], s.carried[i], tilt, w, step, p.fall_rate, pole)
+    s.upright[i] = min(max(found, -UPRIGHT_MOST), UPRIGHT_MOST)
+
+
+@njit(cache=True)
 def _sway(i: int, tilt: float, tilt_rate: float, age: int, tick: int, told: Record, s: Record) -> None:
     # One tick of the pivot along axis i.
     p, now = told.balance, tick % RING
-    s.sway_log[now, i] = s.sway_v[i]
     if s.state != BALANCED or age > p.attitude_age:
         s.sway_a[i] = min(max(-s.sway_v[i] / told.coast, -p.push_max), p.push_max)
     else:

@@ -28,6 +28,13 @@ TRIM_S = 0.4
 SEEN_S, FADE_S = 0.15, 0.1
 """Age of the newest image from which on the gust that it showed is forgotten, and the time constant of that: gusts end unseen."""
 
+CAUGHT_S, SHORT_S, SHORT_N = 0.3, 0.1, 0.3
+"""Time after which a UAV that was caught rests on the magnet; time constant with which it is felt what its rotors fail to carry; from
+how much on that is learnt."""
+
+MOST_HOVER = 2.0
+"""Command over the weight beyond which no rotors' loss is learnt: half the thrust is lost, or the sensor drifts."""
+
 LEAST_SHARE = 0.4
 """Of the weight: a UAV that asks for less does not hover."""
 
@@ -51,6 +58,48 @@ def learn_trim(b: Record) -> None:
         s.trim[i] += gain * (total / p.mass * R[i, 2] + gravity[i] - s.trim[i])
     s.trimmed = m.uav_tick
     s.hover = p.mass * (p.gravity + s.trim[2])
+
+
+@njit(cache=True)
+def learn_shortfall(b: Record) -> None:
+    """Learn from the arm below a UAV that the magnet has caught what its rotors fail to carry, before it is let go or handed over.
+
+    What the pose filter has seen of it until the catch counts at once. Then F_z − W (1 − f_T/T_h) is what the arm carries and should
+    not; it is learnt once it is more than the sensor's zero can drift.
+
+    Args:
+        b: board; what acting keeps of `short`, `hover` and the integral are updated.
+    """
+    e, p, s, decide = b.tick.estimate, b.told.act.uav, b.kept.act, b.kept.decide
+    since = b.tick.measurement.tick - decide.begin
+    if since * p.tick_s < CAUGHT_S:
+        s.short, s.falls_short, s.before = 0.0, 0, s.hover
+        seen = p.mass * (p.gravity + s.integral[2] - _gust(b.kept.estimate.plate.bias, 2, p))
+        if since == 0 and seen - s.hover > SHORT_N:
+            s.hover, s.before, s.integral[2] = seen, seen, seen / p.mass - p.gravity
+        return
+    weight = b.kept.estimate.weight
+    missing = e.hinge_force[2] - weight * (1.0 - e.thrust / max(s.hover, 1e-3))
+    s.short += p.tick_s / SHORT_S * (missing - s.short)
+    s.falls_short = 1 if s.short > SHORT_N else s.falls_short
+    if s.falls_short:
+        more = min(p.tick_s / (2.0 * SHORT_S) * s.hover * missing / weight, MOST_HOVER * weight - s.hover)
+        s.hover += more
+        s.integral[2] += more / p.mass
+
+
+@njit(cache=True)
+def keep_shortfall(p: Record, s: Record) -> None:
+    """Forget at the let-go what was not learnt to its end: the sensor drifts, and the rotors give what they did before.
+
+    Args:
+        p: what commanding the UAV is told.
+        s: what acting keeps; `hover` and the integral are written.
+    """
+    if s.falls_short and abs(s.short) > SHORT_N:
+        s.integral[2] -= (s.hover - s.before) / p.mass
+        s.hover = s.before
+    s.falls_short = 0
 
 
 @njit(cache=True)
@@ -157,3 +206,5 @@ def keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
     for i in range(4):
         s.q_d[i] = q_d[i]
     s.hover += period / p.hover_s * (p.mass * (p.gravity + integral[2] - wind[2]) - s.hover)
+    for i in range(2):
+        s.hovered[i] += period / p.hover_s * (integral[i] - wind[i] - s.hovered[i])

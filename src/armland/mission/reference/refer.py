@@ -80,7 +80,7 @@ def begin_reference(before: int, after: int, b: Record) -> None:
     if new.arm == JOIN:
         begin_track(b.tick.estimate, b.told.refer, b.kept.refer)
     elif new.arm == BALANCE:
-        begin_balance(b.tick.estimate, b.told.refer.balance, b.kept.refer.balance)
+        begin_balance(b.tick.estimate, b.kept.act.hovered, b.told.refer.balance, b.kept.refer.balance)
 
 
 @linked(lambda n: (named("board", n), MATRIX))

@@ -10,20 +10,23 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from armland.mission.reference.moves import BACK_OFF, MOVE
+from armland.mission.reference.guided import MOST_HOVER, SHORT_N
+from armland.mission.reference.moves import BACK_OFF, MOVE, NOD, YIELD
 from armland.mission.supervisor.table import FAULT, FAULTS
 from armland.mission.table.arrays import FAULT_ROWS
-from armland.mission.table.phases import UAV
+from armland.mission.table.phases import LINK, UAV
 from armland.records import Record
 
 COUNT = len(FAULTS)
-AUTONOMOUS, STATION = UAV.index("autonomous"), UAV.index("station")
+AUTONOMOUS, STATION, RAMP, BALANCE = (UAV.index(name) for name in ("autonomous", "station", "ramp", "balance"))
+CAUGHT = LINK.index("caught")
 NON_FINITE, ARM_STALE, UAV_SILENT = FAULT["non_finite"], FAULT["arm_stale"], FAULT["uav_silent"]
 CAMERA_STALE, WRENCH_STALE, WRENCH_DRIFT = FAULT["camera_stale"], FAULT["wrench_stale"], FAULT["wrench_drift"]
 MAGNET_COIL, OVERLOAD, ROTOR_LOST = FAULT["magnet_coil"], FAULT["overload"], FAULT["rotor_lost"]
 ENCODER_FROZEN, POWER_LOST, CAMERA_LEAP = FAULT["encoder_frozen"], FAULT["power_lost"], FAULT["camera_leap"]
 CAMERA_NOISE, WRENCH_WRONG, MAGNET_STUCK = FAULT["camera_noise"], FAULT["wrench_wrong"], FAULT["magnet_stuck"]
-ARM_BLOCKED, THRUST_LOST = FAULT["arm_blocked"], FAULT["thrust_lost"]
+ARM_BLOCKED, THRUST_LOST, THRUST_SHORT = FAULT["arm_blocked"], FAULT["thrust_lost"], FAULT["thrust_short"]
+LINK_LATE = FAULT["link_late"]
 UAV_TILT, SLIP, NEAR_LIMIT, LAW_FAILED = FAULT["uav_tilt"], FAULT["slip"], FAULT["near_limit"], FAULT["law_failed"]
 
 SEEN_S = 0.15
@@ -35,8 +38,24 @@ LOAD_LEFT = 0.3
 WEIGHT_FELT = 0.85
 """Share of the weight at the hinge from which on the rotors carry nothing, where they should carry some."""
 
-STRAINS, SINKS_MPS, FALLS_MPS = 1.12, 0.15, 0.6
-"""Thrust over what should carry the weight, and speed of sinking, of a UAV whose rotors give too little; of one that is silent."""
+STRAINS, SINKS_MPS, PLUNGES_MPS, FALLS_MPS = 1.12, 0.15, 0.5, 0.6
+"""Thrust over what should carry the weight; speed of sinking, with all the thrust, and with that much, of a UAV whose rotors give
+too little; of one that is silent."""
+
+ARRIVES_S = 0.06
+"""Time since the newest sample of the UAV up to which its samples come, however old."""
+
+ALIVE_S, ALIVE_N = 0.15, 0.36
+"""Time constant of what the force sensor has read, and the share of the tool's weight by which it leaps where nothing touches it."""
+
+APART_M, FOLLOWS_MPS = 0.015, 0.03
+"""Distance of the plate, and the speed off its reference, up to which the arm may have touched something."""
+
+NOTHING = 0.09
+"""Share of the tool's weight below which a sensor that carries it reads nothing."""
+
+SHORT, SHORT_S = 0.08, 0.05
+"""Share of the weight by which a UAV that was let go and lies on the arm gives less than it was asked for; time constant of that."""
 
 LEAPT_S = 0.2
 """How long a leap of the marker counts."""
@@ -50,8 +69,9 @@ WEIGHED_S, WEIGHED = 0.45, (0.6, 1.5)
 STUCK_M, STUCK_N, STUCK_S = 0.002, 18.0, 0.2
 """Way that the reference has drawn back, and force, from which on a plate sticks; time after which the current is gone."""
 
-FOLLOWED_M, TOUCHES_M = 0.06, 0.01
-"""Way that the arm has drawn back, and distance of the plate, from which on a plate that is light enough to follow sticks."""
+FOLLOWED_M, SANK_M, TOUCHES_M = 0.06, 0.1, 0.01
+"""Way that the arm has drawn back, and distance of the plate, from which on a plate that is light enough to follow sticks; way after
+which a UAV that still lies on the arm will not rise by itself."""
 
 BLOCKED_M = 0.03
 """Distance of an arm in free motion from its reference which no healthy flight makes."""
@@ -65,10 +85,13 @@ def watch_layout() -> np.dtype:
             ("tick_s", "f8"),
             ("uav_age", "i8"),  # ticks
             ("camera_age", "f8"),  # s
+            ("search_age", "f8"),  # s, likewise where a UAV that is not seen is looked for
             ("arm_age", "i8"),  # ticks
             ("wrench_age", "i8"),  # ticks
             ("unexplained", "f8"),  # N, hinge force that load and thrust need not explain
             ("load_gone", "f8"),  # N, least load that can be missed
+            ("late", "f8"),  # s, delay of the link, both ways, beyond which the UAV cannot be guided
+            ("uav_late", "f8"),  # s, delay of one way beyond which it cannot be held either
             ("hinge_max", "f8"),  # N
             ("tilt_max", "f8"),  # rad
             ("thrust_max", "f8"),  # N, largest thrust that is commanded
@@ -88,6 +111,12 @@ def seen_layout() -> np.dtype:
             ("counts", "i8", (FAULT_ROWS,)),  # ticks for which each fault's sign has been seen
             ("off", "i8"),  # tick at which the magnet was switched off last
             ("carried", "i8"),  # 1 where the UAV hung on the arm until then
+            (
+                "short",
+                "f8",
+            ),  # N, vertical hinge force beyond what a UAV on the magnet makes with the thrust that is asked of it
+            ("zero", "f8"),  # N, that until the magnet was switched off
+            ("usual", "f8"),  # N, the vertical hinge force of late
         ]
     )
 
@@ -104,9 +133,13 @@ def find_fault(expected: float, magnet_on: bool, phase: int, b: Record) -> int:
     """
     m, e, s = b.tick.measurement, b.tick.estimate, b.kept.decide.seen
     signs = np.zeros(FAULT_ROWS, np.bool_)
-    _device_signs(magnet_on, m, e, b.told.decide.watch, b.kept.estimate, signs)
-    _load_signs(expected, b.table.phases[phase].force, m, e, b.told.decide.watch, b.kept.estimate, signs)
+    _device_signs(magnet_on, b.table.phases[phase].seeks == 1, m, e, b.told.decide.watch, b.kept.estimate, signs)
+    row, act = b.table.phases[phase], b.kept.act
+    caught = row.uav == RAMP and row.link == CAUGHT
+    runs_away = caught and act.hover > 0.95 * MOST_HOVER * b.kept.estimate.weight and abs(act.short) > SHORT_N
+    _load_signs(expected, runs_away, row.force, m, e, b.told.decide.watch, b.kept.estimate, signs)
     _motion_signs(b.table.phases[phase], b, signs)
+    _sensor_signs(b.table.phases[phase], b, signs)
     p, health = b.told.decide.watch, b.kept.limit
     sigma = b.kept.estimate.sigma
     signs[NEAR_LIMIT] = (
@@ -121,12 +154,18 @@ def find_fault(expected: float, magnet_on: bool, phase: int, b: Record) -> int:
 
 
 @njit(cache=True)
-def _device_signs(magnet_on: bool, m: Record, e: Record, p: Record, known: Record, signs: np.ndarray) -> None:
+def _device_signs(
+    magnet_on: bool, seeks: bool, m: Record, e: Record, p: Record, known: Record, signs: np.ndarray
+) -> None:
     signs[NON_FINITE] = known.bad > 0
     signs[ARM_STALE] = m.tick - m.arm_tick > p.arm_age
     # Both directions: what it says arrives, and it has heard what was said to it.
     signs[UAV_SILENT] = m.tick - min(m.uav_tick, m.uav_heard) > p.uav_age
-    signs[CAMERA_STALE] = known.seen == 1 and e.plate_age > p.camera_age
+    # Stamps tell a link that is slow from one that is dead: samples come, and say that commands came.
+    comes = (m.tick - known.arrived) * p.tick_s < ARRIVES_S and m.uav_tick - m.uav_heard <= p.uav_age
+    signs[LINK_LATE] = comes and (e.uplink + e.downlink > p.late or max(e.uplink, e.downlink) > p.uav_late)
+    signs[UAV_SILENT] = signs[UAV_SILENT] and not signs[LINK_LATE]
+    signs[CAMERA_STALE] = known.seen == 1 and e.plate_age > (p.search_age if seeks else p.camera_age)
     # One that falls is not where it was expected either, and is silent then.
     leapt = known.filter.leapt > 0 and (m.tick - known.filter.leapt) * p.tick_s < LEAPT_S
     signs[CAMERA_LEAP] = leapt and not signs[UAV_SILENT]
@@ -143,10 +182,18 @@ def _device_signs(magnet_on: bool, m: Record, e: Record, p: Record, known: Recor
 
 @njit(cache=True)
 def _load_signs(
-    expected: float, force_max: float, m: Record, e: Record, p: Record, known: Record, signs: np.ndarray
+    expected: float,
+    runs_away: bool,
+    force_max: float,
+    m: Record,
+    e: Record,
+    p: Record,
+    known: Record,
+    signs: np.ndarray,
 ) -> None:
     force = _force(e)
-    signs[WRENCH_DRIFT] = abs(e.hinge_force[2] - expected) > p.unexplained
+    # Nor does a UAV that the magnet has caught ever come to rest for a sensor whose zero runs away.
+    signs[WRENCH_DRIFT] = abs(e.hinge_force[2] - expected) > p.unexplained or runs_away
     signs[OVERLOAD] = force > min(force_max, p.hinge_max)
     if signs[UAV_SILENT]:
         # It could not be given its thrust back: it is better off lying on the magnet.
@@ -157,6 +204,8 @@ def _load_signs(
     else:
         # Nobody sees it: what the arm should carry is not there.
         signs[SLIP] = expected > p.load_gone and force < LOAD_LEFT * expected
+        # It was seen to slide, left the view, and nothing is felt of it.
+        signs[SLIP] = signs[SLIP] or (known.grip_slides > 1 and force < LOAD_LEFT * p.load_gone)
 
 
 @njit(cache=True)
@@ -175,17 +224,56 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     falls = not held and known.seen == 1 and e.plate_age < LEAPT_S and e.plate_v[2] < -FALLS_MPS
     signs[POWER_LOST] = signs[UAV_SILENT] and (falls or (held and felt))
     strains = kept.act.thrust >= min(0.99 * p.thrust_max, STRAINS * kept.act.hover)
-    sinks = row.uav == STATION and strains and e.plate_v[2] < -SINKS_MPS
-    signs[THRUST_LOST] = sinks or (row.uav == AUTONOMOUS and kept.act.trimmed > 0 and kept.act.hover > p.hover_max)
+    # A loss that its rotors can make up for is learnt: the ground catches it sooner than the UAV's own hover.
+    sinks = kept.act.thrust >= 0.99 * p.thrust_max and e.plate_v[2] < -SINKS_MPS
+    known_speed = e.plate_valid == 1 and known.filter.scattered == 0
+    sinks = row.uav == STATION and known_speed and (sinks or (strains and e.plate_v[2] < -PLUNGES_MPS))
+    sinks = sinks or (row.uav == AUTONOMOUS and known_speed and e.plate_v[2] < -PLUNGES_MPS)
+    # What is still being learnt says nothing: a sensor that drifts is never done.
+    felt_short = row.uav == RAMP and row.link == CAUGHT and abs(kept.act.short) < SHORT_N
+    weighed = (row.uav == AUTONOMOUS and kept.act.trimmed > 0) or felt_short or row.uav == BALANCE
+    signs[THRUST_LOST] = sinks or (weighed and kept.act.hover > p.hover_max)
     signs[ARM_BLOCKED] = apart > BLOCKED_M**2
     if kept.act.magnet != 0:
-        seen.off, seen.carried = m.tick, row.observe
+        seen.off, seen.carried, seen.zero = m.tick, row.observe, seen.short
+    # It moves with the arm: F = m a + W (1 − f_T/T_h), and more by what its rotors fail to give.
+    made = b.told.estimate.mass * kept.refer.a[2] + known.weight * (1.0 - e.thrust / max(kept.act.hover, 1e-3))
+    seen.short += p.tick_s / SHORT_S * (e.hinge_force[2] - made - seen.short)
     gone = (m.tick - seen.off) * p.tick_s > STUCK_S and seen.off > 0
     leaves = row.arm == BACK_OFF or row.arm == MOVE
     pulls = drawn > STUCK_M**2 and _force(e) > STUCK_N
     # One that was not carried yet and lies on the arm may be too weak to rise.
     follows = seen.carried == 1 and kept.decide.retreat > FOLLOWED_M and e.plate_age < SEEN_S and gap < TOUCHES_M**2
-    signs[MAGNET_STUCK] = gone and leaves and (pulls or follows)
+    # A plate that sticks pulls with all the thrust beyond the weight.
+    lies = seen.short - seen.zero > SHORT * known.weight
+    signs[THRUST_SHORT] = gone and leaves and follows and lies and kept.decide.retreat > SANK_M
+    # So does a plate that gives no way at all, before the arm has come far: it holds the arm back, and nothing pushes it.
+    torn = signs[OVERLOAD] and e.hinge_force[2] < 0.0
+    signs[MAGNET_STUCK] = gone and leaves and (pulls or torn or (follows and not lies))
+    signs[OVERLOAD] = signs[OVERLOAD] and not signs[MAGNET_STUCK]
+
+
+@njit(cache=True)
+def _sensor_signs(row: Record, b: Record, signs: np.ndarray) -> None:
+    # Force of an arm that touches nothing and leaps as the tool's weight does whose bridge is dead, reversed or scaled anew; where
+    # something may touch, only a reading of nothing at all, not even the tool's weight, is no contact's.
+    m, e, p, kept, seen = b.tick.measurement, b.tick.estimate, b.told.decide.watch, b.kept, b.kept.decide.seen
+    apart, off, sideways, nothing = 0.0, 0.0, 0.0, 0.0
+    for i in range(3):
+        apart += (e.plate[i] - e.r[i]) ** 2
+        off += (kept.refer.v[i] - e.v[i]) ** 2
+        sideways += e.hinge_force[i] ** 2 if i < 2 else 0.0
+        nothing += (m.wrench[i] - kept.estimate.wrench.bias[i]) ** 2
+    tool = b.told.estimate.wrench.mass * b.told.act.uav.gravity
+    leap = abs(e.hinge_force[2] - seen.usual)
+    seen.usual += p.tick_s / ALIVE_S * (e.hinge_force[2] - seen.usual)
+    # On the cradle the arm gives way to what it touches, seen or not.
+    clear = apart > APART_M**2 and (row.free == 1 or e.plate_age < LEAPT_S) and row.arm != YIELD
+    alone = kept.decide.held == 0 and clear and off < FOLLOWS_MPS**2
+    quiet = row.arm == NOD or row.arm == BACK_OFF
+    leapt = alone and leap > ALIVE_N * tool and sideways < (0.3 * leap) ** 2
+    dead = row.free == 0 and nothing < (NOTHING * tool) ** 2
+    signs[WRENCH_WRONG] = signs[WRENCH_WRONG] or (not quiet and (leapt or dead))
 
 
 @njit(cache=True)

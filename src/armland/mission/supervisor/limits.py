@@ -35,7 +35,7 @@ def told_layout(joints: int) -> np.dtype:
             ("tau_max", "f8", (joints,)),  # N·m
             ("joint_margin", "f8"),  # rad
             ("speed_share", "f8"),  # of qd_max
-            ("torque_rate", "f8"),  # N·m/s
+            ("torque_rate", "f8", (joints,)),  # N·m/s
             ("sigma_min", "f8"),
             ("hinge_max", "f8"),  # N
             ("uav_age", "i8"),  # ticks
@@ -98,7 +98,7 @@ def _cut(i: int, m: Record, gravity: float, p: Record, s: Record, c: Record, h: 
     if abs(asked) > p.tau_max[i]:
         h.flags |= L_TORQUE
         asked = min(max(asked, -p.tau_max[i]), p.tau_max[i])
-    step = p.torque_rate * p.tick_s
+    step = p.torque_rate[i] * p.tick_s
     if s.started and abs(asked - s.tau[i]) > step:
         h.flags |= L_RATE
         asked = s.tau[i] + min(max(asked - s.tau[i], -step), step)

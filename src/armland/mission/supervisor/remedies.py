@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 
+from armland.records import Record
+
 REMEDIES: dict[str, tuple[str, str]] = {
     "non_finite": ("a device sends numbers that are none", "look at the device whose samples are flagged"),
     "encoder_frozen": (
@@ -21,8 +23,16 @@ REMEDIES: dict[str, tuple[str, str]] = {
         "light the marker, look at focus and exposure, state the camera's real noise",
     ),
     "wrench_wrong": (
-        "the force-torque sensor does not feel the tool's inertia as it should: it is dead, reversed or badly scaled",
+        "the force-torque sensor does not feel the tool as it should: it is dead, reversed or badly scaled",
         "look at the sensor's wiring, axes and calibration",
+    ),
+    "link_late": (
+        "the UAV's samples and the commands to it come, but later than it can be flown by",
+        "look what else uses the radio channel, state the link's real delay",
+    ),
+    "thrust_short": (
+        "the UAV that was let go lies on the arm: its rotors give less than its weight",
+        "charge its battery, take off its load, look at its rotors",
     ),
     "magnet_stuck": (
         "the plate does not come off the magnet that was switched off",
@@ -69,6 +79,19 @@ REMEDIES: dict[str, tuple[str, str]] = {
 }
 """Fault -> what was found; what helps."""
 
+LEARNT: dict[str, str] = {
+    "camera_noise": "by {camera_noise:.1f} times, as its images scatter",
+    "link_late": "{uplink_ms:.0f} ms up and {downlink_ms:.0f} ms down, by the stamps",
+    "thrust_lost": "a command of {hover:.2f} N was learnt to carry its {weight:.2f} N",
+    "thrust_short": "a command of {hover:.2f} N was learnt to carry its {weight:.2f} N",
+    "wrench_drift": "{force:.1f} N were felt; the UAV's weight was learnt as {weight:.2f} N",
+    "overload": "{force:.1f} N were felt",
+}
+"""Fault -> what was learnt in flight of its cause, from `learnt_values`."""
+
+NOISE_TOLD = 2.0
+"""Error of the camera over the one that it claims from which on a mission that ran out of time says so."""
+
 STANDING: dict[str, str] = {
     "done": "the arm holds",
     "resting": "the arm comes to rest by its own impedance, the UAV stays level on its hinge",
@@ -86,7 +109,16 @@ STANDING: dict[str, str] = {
 """End -> what arm, magnet and UAV are told to do in it; whether they do, the record of a flight says."""
 
 
-def stopped(end: str, before: str, fault: str, now: str, timeouts: Mapping[str, str]) -> str:
+def learnt_values(estimate: Record) -> dict[str, float]:
+    """What `LEARNT` names, of one estimate: a factor, ms, N."""
+    force = sum(float(x) ** 2 for x in estimate["hinge_force"]) ** 0.5
+    values = {name: float(estimate[name]) for name in ("camera_noise", "weight", "hover")}
+    return values | {f"{name}_ms": 1e3 * float(estimate[name]) for name in ("uplink", "downlink")} | {"force": force}
+
+
+def stopped(
+    end: str, before: str, fault: str, now: str, timeouts: Mapping[str, str], learnt: Mapping[str, float] | None = None
+) -> str:
     """One sentence on a mission that ended in `end` after phase `before`.
 
     Args:
@@ -95,8 +127,14 @@ def stopped(end: str, before: str, fault: str, now: str, timeouts: Mapping[str, 
         fault: name of the fault; `none` after a time-out.
         now: what arm, magnet and UAV really do, as the record of the flight has it.
         timeouts: of the mission: phase -> why it can run out of time, and what helps.
+        learnt: of `learnt_values`, when the fault was found; it is left out where nothing is given.
     """
     if fault not in REMEDIES:
-        return f"ended in {end} after {before}: {timeouts.get(before, 'time was over')}; now {now}"
+        why = timeouts.get(before, "time was over")
+        if learnt and learnt["camera_noise"] > NOISE_TOLD:
+            why += f"; the camera errs {learnt['camera_noise']:.1f} times what it claims"
+        return f"ended in {end} after {before}: {why}; now {now}"
     found, remedy = REMEDIES[fault]
+    if learnt and fault in LEARNT:
+        found += f" ({LEARNT[fault].format(**learnt)})"
     return f"ended in {end} after {before}: {fault}, {found}; now {now}; {remedy}"

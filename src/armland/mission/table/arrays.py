@@ -24,6 +24,7 @@ PHASE = np.dtype(
         ("held", "i8"),
         ("free", "i8"),
         ("observe", "i8"),
+        ("seeks", "i8"),
         ("force", "f8"),  # N, largest hinge force
         ("share", "f8"),  # of the hover thrust, at the end of a ramp
         ("duration", "f8"),  # s
@@ -87,6 +88,7 @@ def compile_table(
         row["arm"], row["uav"], row["magnet"] = ARM.index(p.arm), UAV.index(p.uav), MAGNET.index(p.magnet)
         row["link"] = LINK.index(p.link)
         row["held"], row["free"], row["observe"], row["final"] = p.held, p.free, p.observe, p.final
+        row["seeks"] = p.seeks
         row["force"], row["share"] = loads[p.load], shares[p.share]
         row["duration"], row["timeout"] = p.duration_s, p.timeout_s
         row["on_timeout"] = names.index(p.name if p.final else p.on_timeout)

@@ -32,10 +32,11 @@ SIGNALS = {
     "rotors": "N",
     "lean": "deg",
     "image_offset": "m",
+    "image_gap": "m",
 }
 """What guards may ask for, and the unit. `offset` is horizontal, as reckoned; `image_offset` what the newest images show of it along
-the magnet's face; `pull` the vertical hinge force that pulls the UAV down, `lean` the angle of the UAV's z axis to the one that was
-asked for."""
+the magnet's face, `image_gap` across it; `pull` the vertical hinge force that pulls the UAV down, `lean` the angle of the UAV's z axis
+to the one that was asked for."""
 
 SIGNAL = {name: i for i, name in enumerate(SIGNALS)}
 
@@ -122,6 +123,8 @@ class Phase(NamedTuple):
     """Whether the end effector is known to touch nothing: the force-torque sensor's bias is learnt."""
     sight: bool = True
     """Whether the camera should see the UAV."""
+    seeks: bool = False
+    """Whether a UAV that is not seen is waited and looked for as long as `limits.search_ms`."""
     observe: bool = False
     """Whether the disturbance observer learns."""
     load: str = "carried"

@@ -30,8 +30,18 @@ WEAK_SAMPLES = 2
 RING = 1024
 """Length of the delay lines in ticks; the longest delay that can be simulated is one tick less."""
 
-MESSAGE = np.dtype([("quat", "f8", (4,)), ("delta_tau", "f8", (3,)), ("thrust", "f8"), ("mode", "i8"), ("sent", "i8")])
-"""Upwards: set-point, Δτ_att in N·m, thrust in N, mode, and the tick at which it was sent; -1: lost, or none yet."""
+MESSAGE = np.dtype(
+    [
+        ("quat", "f8", (4,)),
+        ("delta_tau", "f8", (3,)),
+        ("thrust", "f8"),
+        ("step", "f8", (3,)),
+        ("mode", "i8"),
+        ("sent", "i8"),
+    ]
+)
+"""Upwards: set-point, Δτ_att in N·m, thrust in N, step of its own hover in m, mode, and the tick at which it was sent; -1: lost, or
+none yet."""
 
 SAMPLE = np.dtype(
     [
@@ -90,6 +100,7 @@ def send(k: int, told: Record, kept: Record, faults: Record, noise: Array, c: Re
     message.sent = -1 if lost else k
     message.quat = c.uav_quat
     message.delta_tau = c.delta_tau
+    message.step = c.uav_step
     message.thrust, message.mode = c.thrust, c.uav_mode
 
 
@@ -105,6 +116,7 @@ def arrive(k: int, told: Record, kept: Record, faults: Record, noise: Array) -> 
     kept.heard = k
     newest.quat = message.quat
     newest.delta_tau = message.delta_tau
+    newest.step = message.step
     newest.thrust, newest.mode, newest.sent = message.thrust, message.mode, sent
 
 

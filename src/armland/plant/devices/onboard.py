@@ -132,7 +132,7 @@ def fly(k: int, world: Record, noise: Noise, row: int, t: Record) -> None:
     mode, silent = arrived.mode, k - kept.link.heard > p.watchdog
     q_d, extra = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
     if kept.faults.deaf or mode == AUTONOMOUS or (silent and mode in (GUIDED, CAUGHT)):
-        q_d = _hover(world, t, noise.hover[row], noise.speed[row], p.climb if silent else 0.0)
+        q_d = _hover(world, t, noise.hover[row], noise.speed[row], p.climb if silent else 0.0, mode == AUTONOMOUS)
     else:
         s.hovering = 0
         if mode != HINGED:
@@ -172,9 +172,9 @@ def _watch(mode: int, p: Record, s: Record, rotors: Record) -> bool:
 
 
 @njit(cache=True)
-def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float) -> Array:
+def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float, told: bool) -> Array:
     # Own position estimate: the true one and white noise, in the UAV's own idea of the axes; own velocity: the true one, a bias, and
-    # noise that is correlated.
+    # noise that is correlated. Where the ground has told it to hover by itself, it takes the step that it was told.
     kept, bias = world.kept, world.told.imu.bias
     p, s, quat = world.told.onboard, kept.onboard, kept.imu.quat
     if not s.hovering:
@@ -204,6 +204,8 @@ def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float) -
         p.lift_min,
         p.thrust_max,
     )
+    if told and not kept.faults.deaf:
+        turned += kept.link.arrived.step
     reference = StationReference(turned, still, still, s.heading)
     g = world.environment.gravity
     here = still, moving, quat.copy()

@@ -47,7 +47,8 @@ def load_scenario(path: str | Path = "landing", overrides: dict[str, Any] | None
     found = renamed(extra)
     own = _tables(path, found)
     own |= {key: extra.pop(key) for key in ("base", "calibration") if key in extra}
-    data = _based(own, path, found, 0)
+    asked = set(leaves(extra))
+    data = _based(own, path, found, asked)
     update(own, extra)
     _resolve_files(extra, path.parent)
     update(data, extra)
@@ -60,6 +61,7 @@ def load_scenario(path: str | Path = "landing", overrides: dict[str, Any] | None
     scenario._text = _text(path)
     scenario._overrides = as_json(overrides) if overrides else ""
     scenario._own = frozenset(leaves({k: v for k, v in own.items() if k not in ("base", "calibration", "title")}))
+    scenario._asked = frozenset(asked)
     return scenario
 
 
@@ -97,9 +99,11 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise ConfigurationError(f"{path.name} is not valid TOML: {e}") from e
 
 
-def _based(data: dict[str, Any], path: Path, found: list[str], depth: int) -> dict[str, Any]:
-    # The tables of a file on those of its base, calibrated values and absolute paths included.
+def _based(data: dict[str, Any], path: Path, found: list[str], asked: set[str], depth: int = 0) -> dict[str, Any]:
+    # The tables of a file on those of its base, calibrated values and absolute paths included. What a user's file sets is asked for.
     data = deepcopy(data)
+    if path.parent.resolve() != SCENARIOS.resolve():
+        asked |= set(leaves(data))
     base, calibration = data.pop("base", None), data.get("calibration")
     if isinstance(calibration, str):
         file = _beside(calibration, path, "calibration")
@@ -117,7 +121,7 @@ def _based(data: dict[str, Any], path: Path, found: list[str], depth: int) -> di
     file = _beside(base, path, "base")
     with _named(path, "base"):
         tables = _tables(file, found)
-    out = _based(tables, file, found, depth + 1)
+    out = _based(tables, file, found, asked, depth + 1)
     update(out, data)
     return out
 

@@ -1,0 +1,233 @@
+"""How near an arm comes to what stands around it: floor, cradle, UAV and its own links, by MuJoCo's distances.
+
+| arm | what it is measured by |
+|---|---|
+| all links | the shapes that its file means for contact, or those that stand for links without any |
+| outer half, links without shapes | capsules from joint to joint as well, which is what the plant lets touch |
+| tool | a capsule around sensor, magnet and camera |
+
+The scene is the planner's own and knows nothing of the plant's: cradle and UAV are put where a plan wants them.
+"""
+
+from itertools import combinations
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from armland.models.arm_file.spec import SHAPE
+from armland.models.arm_file.strength import poses
+from armland.models.description import compile_spec
+from armland.models.parameters import ROTOR_SITES, arm_spec, uav_file, uav_parameters
+from armland.rotations import Array
+from armland.scenario import Scenario
+
+LINK_RADIUS_M, TOOL_RADIUS_M, BEAM_RADIUS_M = 0.06, 0.03, 0.015
+"""Of the capsules along the links, around the tool, and of the beams that carry the rotors."""
+
+FLOOR_M, CRADLE_M, UAV_M = 0.01, 0.01, 0.01
+"""Clearance of the arm to floor, cradle and UAV. To the cradle it is less than `control.approach.clearance_m`, which the corridor of
+`room` leaves an arm that stands upright in it: one that leans may use some of that."""
+
+FAR_M, TOUCH_M, SAME_M = 0.05, 1e-6, 0.3
+"""Distances beyond the first, and differences below the second, are not told apart; within the third it is seen what never changes."""
+
+SPARE_M = 0.002
+"""By how much less than the largest distance of all poses is kept at most."""
+
+ALWAYS, SAMPLED = 0.9, 60
+"""Share of random poses, and their number: two shapes that meet in more of them are built into each other."""
+
+
+class Near(NamedTuple):
+    """The tightest place between an arm and what is around it."""
+
+    room: float
+    """Distance less the clearance that is kept, m: negative where the arm is too near."""
+    link: str
+    other: str
+    clearance: float
+    """That is kept, m."""
+
+
+class _Pair(NamedTuple):
+    one: int
+    two: int
+    clearance: float
+    link: str
+    other: str
+
+
+class Obstacles:
+    """An arm between floor, cradle and UAV. It owns a scene of its own, which `nearest` overwrites."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        """Compose the scene of a believed scenario's arm, UAV and cradle.
+
+        Raises:
+            ModelError: an arm or UAV file that cannot be used.
+        """
+        spec = arm_spec(scenario)
+        bare = compile_spec(spec, "the arm")
+        links = [g.name for g in spec.geoms if g.name.startswith(SHAPE)]
+        links += [*_add_links(spec, bare), _add_tool(spec, scenario)]
+        uav, cradle = _add_uav(spec, scenario), _add_cradle(spec, scenario)
+        spec.worldbody.add_geom(
+            name="floor", type=mujoco.mjtGeom.mjGEOM_BOX, size=[9.0, 9.0, 0.5], pos=[0.0, 0.0, -0.5]
+        )
+        self._model = compile_spec(spec, "the arm's surroundings")
+        self._data = mujoco.MjData(self._model)
+        self._data.mocap_pos[:] = [0.0, 0.0, 99.0]
+        self._joints, self.lever = bare.nq, uav_parameters(scenario).lever
+        """Centre of mass to the pivot (3,), m, B."""
+        above = self.lever[2] - scenario.skids.z_m + scenario.skids.radius_m
+        self._rails = np.array([0.0, 0.0, above])
+        others = {
+            "the floor": (["floor"], FLOOR_M),
+            "the cradle": (cradle, CRADLE_M),
+            "the UAV": (uav, UAV_M),
+        }
+        self._pairs = self._outside(links, others) + self._inside([n for n in links if n.startswith(SHAPE)])
+
+    def put_cradle(self, put_down: Array, heading_deg: float) -> None:
+        """Put the cradle where the UAV stands on it with its pivot at `put_down` (3,), m, D, its rails along the heading."""
+        half = 0.5 * np.deg2rad(heading_deg)
+        at = self._model.body("cradle").mocapid[0]
+        self._data.mocap_pos[at] = put_down - self._rails
+        self._data.mocap_quat[at] = [np.cos(half), 0.0, 0.0, np.sin(half)]
+
+    def nearest(self, q: Array, pivot: Array, slack: float = 0.0, any_will_do: bool = False) -> Near:
+        """The tightest place with the arm at `q` (n,), rad, and the level UAV's pivot at `pivot` (3,), m, D.
+
+        `slack` is by how much the clearances are less, m; `any_will_do` asks for any place that is too tight, where there is one.
+        """
+        self._data.qpos[: self._joints] = q
+        self._data.mocap_pos[self._model.body("uav").mocapid[0]] = pivot - self.lever
+        mujoco.mj_kinematics(self._model, self._data)
+        best = Near(FAR_M, "", "", 0.0)
+        for i, pair in enumerate(self._pairs):
+            kept = max(pair.clearance - slack, 0.0)
+            most = max(best.room + kept, TOUCH_M)
+            room = mujoco.mj_geomDistance(self._model, self._data, pair.one, pair.two, most, None) - kept
+            if room < best.room - TOUCH_M:
+                best = Near(room, pair.link, pair.other, kept)
+                if any_will_do and room < 0.0:
+                    # What is too near here is most likely so next door.
+                    self._pairs.insert(0, self._pairs.pop(i))
+                    break
+        return best
+
+    def _outside(self, links: list[str], others: dict[str, tuple[list[str], float]]) -> list[_Pair]:
+        # What stands still, as the arm's base, meets nothing; nor does the tool meet what it grips.
+        model, pairs = self._model, []
+        moving = [n for n in links if model.body_weldid[model.geom(n).bodyid[0]] != 0]
+        for what, (names, clearance) in others.items():
+            for link in moving:
+                if what == "the UAV" and link == "tool":
+                    continue
+                for name in names:
+                    label = self._label(link)
+                    pairs.append(_Pair(model.geom(link).id, model.geom(name).id, clearance, label, what))
+        return self._free(pairs)
+
+    def _inside(self, links: list[str]) -> list[_Pair]:
+        model = self._model
+        pairs = []
+        for one, two in combinations(links, 2):
+            a, b = (self._depth(n) for n in (one, two))
+            if abs(a - b) >= 3:
+                label = self._label(one), self._label(two)
+                pairs.append(_Pair(model.geom(one).id, model.geom(two).id, 0.0, label[1], label[0]))
+        return self._free(pairs)
+
+    def _free(self, pairs: list[_Pair]) -> list[_Pair]:
+        # Without those that are built into each other, or whose distance no joint changes: a plan can do nothing about them.
+        samples = poses(self._model)[:SAMPLED]
+        far = np.empty((len(samples), len(pairs)))
+        self.put_cradle(np.array([0.0, 0.0, 99.0]), 0.0)
+        for row, q in zip(far, samples, strict=True):
+            self._data.qpos[:] = q
+            mujoco.mj_kinematics(self._model, self._data)
+            for i, pair in enumerate(pairs):
+                row[i] = mujoco.mj_geomDistance(self._model, self._data, pair.one, pair.two, SAME_M, None)
+        always, same = (far < 0.0).mean(axis=0) > ALWAYS, (np.ptp(far, axis=0) < TOUCH_M) & (far[0] < SAME_M)
+        # No clearance is kept that no pose has, as of a shoulder to the floor that its arm stands on.
+        most = np.maximum(far.max(axis=0) - SPARE_M, 0.0)
+        kept = [p._replace(clearance=min(p.clearance, m)) for p, m in zip(pairs, most, strict=True)]
+        return [p for p, a, s in zip(kept, always, same, strict=True) if not a and not s]
+
+    def _depth(self, name: str) -> int:
+        # Number of joints between the ground and a shape.
+        body, count = int(self._model.geom(name).bodyid[0]), 0
+        while body > 0:
+            count += int(self._model.body_jntnum[body])
+            body = int(self._model.body_parentid[body])
+        return count
+
+    def _label(self, name: str) -> str:
+        if name == "tool":
+            return "the tool"
+        body = int(self._model.geom(name).bodyid[0])
+        name = self._model.body(body).name.removeprefix("arm/")
+        return name if name.startswith("link") else f"link {name}"
+
+
+def _add_links(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[str]:
+    data, names = mujoco.MjData(model), []
+    mujoco.mj_kinematics(model, data)
+    shaped = {int(model.geom_bodyid[i]) for i in range(model.ngeom) if model.geom(i).name.startswith(SHAPE)}
+    for i in range(model.njnt - 1):
+        body = int(model.jnt_bodyid[i])
+        if i < model.njnt // 2 and body in shaped:
+            continue
+        ends = (data.xanchor[[i, i + 1]] - data.xpos[body]) @ data.xmat[body].reshape(3, 3)
+        if np.linalg.norm(ends[1] - ends[0]) < 2.0 * LINK_RADIUS_M:
+            ends = ends.mean(axis=0) + np.array([[0.0, 0.0, -1e-4], [0.0, 0.0, 1e-4]])
+        names.append(f"along_{i + 1}")
+        _add_capsule(spec.joint(model.joint(i).name).parent, ends, LINK_RADIUS_M, names[-1])
+    return names
+
+
+def _add_tool(spec: mujoco.MjSpec, scenario: Scenario) -> str:
+    tool = scenario.tool
+    top = tool.length_m - tool.sensor_length_m - scenario.plate.drop_m - TOOL_RADIUS_M
+    ends = np.array([[0.0, 0.0, -tool.sensor_length_m], [0.0, 0.0, top]])
+    _add_capsule(spec.body("armland_tool"), ends, TOOL_RADIUS_M, "tool")
+    return "tool"
+
+
+def _add_uav(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:
+    # Its origin is the centre of mass, as in its file.
+    file, skids, body = uav_file(scenario), scenario.skids, spec.worldbody.add_body(name="uav", mocap=True)
+    at = {s.name: np.array(s.pos) for s in file.sites}
+    rotors, y = [at[name] - at["cm"] for name in ROTOR_SITES], np.array([0.0, skids.half_length_m, 0.0])
+    half = len(rotors) // 2
+    for i in range(half):
+        _add_capsule(body, np.array([rotors[i], rotors[i + half]]), BEAM_RADIUS_M, f"beam_{i}")
+    for i, x in enumerate((skids.x_m, -skids.x_m)):
+        middle = np.array([x, 0.0, skids.z_m])
+        _add_capsule(body, np.array([middle - y, middle + y]), skids.radius_m, f"skid_{i}")
+    return [*(f"beam_{i}" for i in range(half)), "skid_0", "skid_1"]
+
+
+def _add_cradle(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:
+    # Its origin is the middle of the slot at the rails' upper edge; the legs reach through the floor.
+    c, body, names = scenario.cradle, spec.worldbody.add_body(name="cradle", mocap=True), []
+    x, across, z = 0.5 * c.length_m, 0.5 * c.gap_m + c.radius_m, -c.radius_m
+    for side in (-1.0, 1.0):
+        y = side * across
+        names += [f"rail{side:+.0f}", f"leg{side:+.0f}a", f"leg{side:+.0f}b"]
+        _add_capsule(body, np.array([[-x, y, z], [x, y, z]]), c.radius_m, names[-3])
+        for name, foot in zip(names[-2:], (-0.3 * x, 0.8 * x), strict=True):
+            leg = np.array([[foot, y, z], [foot, 1.5 * y, -LEG_M]])
+            _add_capsule(body, leg, 0.7 * c.radius_m, name)
+    return names
+
+
+LEG_M = 0.6
+"""Length of the cradle's legs below its rails: they lean outwards."""
+
+
+def _add_capsule(body: mujoco.MjsBody, ends: Array, radius: float, name: str) -> None:
+    kind = mujoco.mjtGeom.mjGEOM_CAPSULE
+    body.add_geom(name=name, type=kind, fromto=ends.ravel(), size=[radius, 0, 0], mass=0, contype=0, conaffinity=0)

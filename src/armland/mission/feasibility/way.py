@@ -1,0 +1,154 @@
+"""The poses that a held arm really takes on its way: its null space sinks, and there it must be clear of all that is around it.
+
+| symbol | name | unit |
+|---|---|---|
+| q | joint positions (n,) | rad |
+| τ₀ | null-space wish of the controller (n,), `control.laws.nullspace` | N·m |
+| N = I − 𝒥⁺𝒥 | projection onto motions that leave the end effector where it is (n, n) | 1 |
+
+The controller lets the arm follow N τ₀ until nothing of it is left: elbow low, joints away from their ends. It gets there within
+a second or two, so this pose, and not the one that the inverse kinematics happens to find, is what has to be clear.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from armland.control.laws.realisation import elbow_of
+from armland.errors import WorkspaceError
+from armland.mission.feasibility.obstacles import Near, Obstacles
+from armland.mission.feasibility.room import room
+from armland.mission.table.mission import Start
+from armland.models.arm import ArmModel
+from armland.models.nearby import Sinking, body_of, sink
+from armland.rotations import Array
+from armland.scenario import Scenario
+
+AT_ONCE, ON_THE_WAY = 80, 4
+"""Steps along the null space where the arm waits, and at each point of its way."""
+
+YIELDING, STEP_RAD = 0.04, 0.1
+"""rad per N·m of the wish, and longest step. One over the stiffest push from a joint's end and
+the elbow's pull, 25 N·m/rad: steps do not overshoot."""
+
+SPEEDS = 1.0
+"""Share that a plan may use of the joint speeds at which the supervisor stops the arm."""
+
+MARGINS, SIGMAS = 2.0, 1.2
+"""Margin to the joints' ends and smallest singular value that a plan leaves, over those at which the supervisor stops the arm."""
+
+
+AT_THE_ENDS_M = 0.008
+"""By how much clearances may be less at the farthest places to which the arm follows the UAV, where it seldom is, m."""
+
+
+MOVES_MPS = 0.306
+"""Fastest move of a landing: the approach's 0.21 m in 1.5 s have 35/16 of that mean at their middle."""
+
+
+class Stop(NamedTuple):
+    """A place of the end effector and where the UAV's pivot is then, (3,) m, D."""
+
+    point: Array
+    pivot: Array
+    slack: float = 0.0
+    """By how much the clearances may be less there, m."""
+
+
+def stops(points: Array, scenario: Scenario, start: Start) -> list[Stop]:
+    """Where the UAV is at each of the mission's `points` (k, 3), m, D: on the arm, except where the arm is below its station or the
+    cradle; then, of a mission that begins in the air, the farthest places to which the arm follows the UAV.
+    """
+    stations = [np.array(scenario.place.catch_m), np.array(scenario.place.put_down_m)]
+    out = []
+    for point in points:
+        above = [s for s in stations if np.hypot(*(s - point)[:2]) < 1e-6 and s[2] > point[2]]
+        out.append(Stop(point, min(above, key=lambda s: s[2]) if above else point))
+    if start == "air":
+        low, high = room(scenario, start)
+        catch = stations[0]
+        for axis in range(3):
+            for end in (low, high):
+                there = catch.copy()
+                there[axis] = end[axis]
+                out.append(Stop(there, there, AT_THE_ENDS_M))
+    return out
+
+
+def check_clear(arm: ArmModel, q: Array, way: list[Stop], scenario: Scenario, obstacles: Obstacles) -> float:
+    """Follow the way with the null space sunk; returns the least room that is left to what is around, m.
+
+    Args:
+        arm: the arm model (its state is overwritten).
+        q: joint positions (n,), rad, in which the arm begins.
+        way: where it goes; the end effector upright at the first of it in `q`.
+        scenario: believed.
+        obstacles: with the cradle put where the scenario has it.
+
+    Raises:
+        WorkspaceError: what comes too near to what, or which of the supervisor's margins is left, and where.
+    """
+    body, how, q = body_of(arm), sinking(arm, scenario), q.copy()
+    least = _checked(arm, q, way[0], scenario, obstacles)
+    for k, stop in enumerate(way):
+        if not sink(body, q, stop.point, how, ON_THE_WAY if k else AT_ONCE):
+            raise WorkspaceError(f"{_where(stop)} the arm, its null space sunk, is out of reach")
+        least = min(least, _checked(arm, q, stop, scenario, obstacles))
+    return least
+
+
+def sinking(arm: ArmModel, scenario: Scenario) -> Sinking:
+    """How the null space of the scenario's arm sinks.
+
+    Raises:
+        ConfigurationError: the arm has no joint of the name that `arm.elbow_joint` gives.
+    """
+    c = scenario.control
+    return Sinking(
+        elbow_of(scenario, arm), c.elbow_force_n, c.range_margin_rad, c.range_stiffness_nm, YIELDING, STEP_RAD
+    )
+
+
+def hasty(arm: ArmModel, scenario: Scenario) -> int | None:
+    """Index of a joint that would have to turn too fast for a landing's upward move in the present pose; None where none would."""
+    J = arm.jacobian
+    needed = MOVES_MPS * np.abs(J.T @ np.linalg.solve(J @ J.T + 1e-9 * np.eye(6), np.eye(6)[:, 2]))
+    share = needed / (scenario.limits.joint_speed_share * arm.qd_max)
+    return int(share.argmax()) if share.max() > SPEEDS else None
+
+
+def _where(stop: Stop) -> str:
+    return f"with the end effector at ({', '.join(f'{x:.2f}' for x in stop.point)}) m"
+
+
+def _checked(arm: ArmModel, q: Array, stop: Stop, scenario: Scenario, obstacles: Obstacles) -> float:
+    arm.update(q, np.zeros(arm.joints))
+    near, limits = obstacles.nearest(q, stop.pivot, stop.slack), scenario.limits
+    where = _where(stop)
+    if near.room < 0.0:
+        raise WorkspaceError(f"{where} {_told(near)}")
+    gap = np.minimum(q - arm.q_min, arm.q_max - q)
+    tight = int(gap.argmin())
+    if gap[tight] < MARGINS * limits.joint_margin_rad:
+        raise WorkspaceError(
+            f"{where} joint {arm.joint_names[tight]} sinks to {gap[tight]:.3f} rad from its range's end; a plan leaves "
+            f"{MARGINS:g} times limits.joint_margin_rad, {MARGINS * limits.joint_margin_rad:g} rad"
+        )
+    sigma = float(np.linalg.svd(arm.jacobian, compute_uv=False)[-1])
+    if sigma < SIGMAS * limits.sigma_min:
+        raise WorkspaceError(
+            f"{where} the arm is near a singularity: smallest singular value {sigma:.3f}; a plan leaves {SIGMAS:g} times "
+            f"limits.sigma_min, {SIGMAS * limits.sigma_min:g}"
+        )
+    fast = hasty(arm, scenario) if stop.slack == 0.0 else None
+    if fast is not None:
+        raise WorkspaceError(
+            f"{where} joint {arm.joint_names[fast]} would have to turn too fast for a move of {MOVES_MPS:g} m/s upwards; a plan uses "
+            f"{SPEEDS:g} of limits.joint_speed_share = {limits.joint_speed_share:g} of its {arm.qd_max[fast]:.2f} rad/s"
+        )
+    return near.room
+
+
+def _told(near: Near) -> str:
+    distance = 1e3 * (near.room + near.clearance)
+    return f"{near.link} comes within {distance:.0f} mm of {near.other}; {1e3 * near.clearance:.0f} mm are kept"

@@ -1,0 +1,63 @@
+"""The poses of a whole landing, null space sunk: they are those that are flown, and what is too near on them is refused."""
+
+import numpy as np
+import pytest
+
+from armland.errors import WorkspaceError
+from armland.mission.feasibility.obstacles import Obstacles
+from armland.mission.feasibility.way import AT_ONCE, check_clear, sinking, stops
+from armland.models.nearby import body_of, sink
+from armland.scenario import load_scenario
+
+
+def whole(plan, **overrides):
+    scenario = load_scenario("landing", overrides).believed() if overrides else plan.scenario
+    place, up = scenario.place, np.array([0.0, 0.0, 1.0])
+    catch, put = np.array(place.catch_m), np.array(place.put_down_m)
+    points = [catch - place.wait_below_m * up, catch, put + place.above_m * up, put, put - place.withdraw_m * up]
+    around = Obstacles(scenario)
+    around.put_cradle(put, scenario.cradle.heading_deg)
+    return scenario, stops(np.array(points), scenario, "air"), around
+
+
+def test_uav_is_on_the_arm_except_above_it_at_its_station_and_on_the_cradle(landing_plan):
+    scenario, way, _ = whole(landing_plan)
+    np.testing.assert_allclose(way[0].pivot, scenario.place.catch_m)
+    np.testing.assert_allclose(way[2].pivot, way[2].point)
+    np.testing.assert_allclose(way[4].pivot, scenario.place.put_down_m)
+    ends = np.array([s.point for s in way[5:]]) - scenario.place.catch_m
+    np.testing.assert_allclose(np.ptp(ends, axis=0), [0.12, 0.10, 0.15], atol=1e-9)
+
+
+def test_way_of_the_landing_is_clear(landing_plan):
+    scenario, way, around = whole(landing_plan)
+    assert check_clear(landing_plan.arm, landing_plan.home, way, scenario, around) > 0.0
+
+
+def test_arm_is_flown_as_its_null_space_is_expected_to_sink(landing_plan, landed):
+    """At the end of the phase in which the arm waits, in the joints of the measurement."""
+    scenario, way, _ = whole(landing_plan)
+    q, arm = landing_plan.home.copy(), landing_plan.arm
+    assert sink(body_of(arm), q, way[0].point, sinking(arm, scenario), AT_ONCE)
+    ticks = landed.ticks
+    last = np.flatnonzero(ticks["mission"]["phase"] == landing_plan.number("guide"))[-1]
+    flown = ticks["measurement"]["q"][last]
+    # Dry friction of the joints holds the last of it.
+    np.testing.assert_allclose(flown, q, atol=0.15)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        ({"cradle": {"gap_m": 0.2}, "arm": {"width_m": 0.06}}, r"comes within -?\d+ mm of the cradle; \d+ mm are kept"),
+        (
+            {"limits": {"sigma_min": 0.2}},
+            r"near a singularity: smallest singular value 0\.\d+; a plan leaves 1\.2 times",
+        ),
+        ({"limits": {"joint_margin_rad": 0.6}}, r"joint \w+ sinks to 0\.\d+ rad from its range's end"),
+    ],
+)
+def test_what_is_too_near_on_the_way_is_refused(landing_plan, overrides, words):
+    scenario, way, around = whole(landing_plan, **overrides)
+    with pytest.raises(WorkspaceError, match=words):
+        check_clear(landing_plan.arm, landing_plan.home, way, scenario, around)
