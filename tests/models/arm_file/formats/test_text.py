@@ -64,14 +64,12 @@ def test_xacro_is_refused_with_how_to_expand_it(root, inner, found):
 
 
 def test_what_xacro_left_behind_is_no_xacro(root):
-    """The namespace on the root, paths of meshes, and parameters of somebody's plug-in."""
-    refuse_xacro(
-        root(
-            "<robot name='a' xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='l'><visual><geometry>"
-            "<mesh filename='$(find arm)/l.stl'/></geometry></visual></link><gazebo><p file='$(find arm)/c.yaml'/></gazebo></robot>"
-        ),
-        "arm",
-    )
+    """The namespace on the root, paths of meshes, and parameters of somebody's plug-in; the same in a joint is xacro."""
+    head, mesh = "<robot name='a' xmlns:xacro='http://www.ros.org/wiki/xacro'>", "<mesh filename='$(find arm)/l.stl'/>"
+    left = f"{head}<link name='l'><visual><geometry>{mesh}</geometry></visual></link><gazebo><p file='$(find arm)'/></gazebo>"
+    refuse_xacro(root(f"{left}</robot>"), "arm")
+    with pytest.raises(ModelError, match="has not been expanded"):
+        refuse_xacro(root(f"{left}<joint name='j'><origin xyz='0 0 $(find arm)'/></joint></robot>"), "arm")
 
 
 def test_numbers_are_finite_and_as_many_as_wanted():
