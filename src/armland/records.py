@@ -93,6 +93,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("retries", (), "1", "-", "missed captures so far", "i8"),
         Field("fault", (), "1", "-", "index into the faults; 0 is none", "i8"),
         Field("elapsed", (), "s", "-", "time in the phase"),
+        Field("unmet", (), "1", "-", "bit i: the phase before ran out of time waiting for signal i of `SIGNALS`", "i8"),
         Field("progress", (), "1", "-", "how far the phase's move is, 0 to 1"),
     ),
     "reference": (

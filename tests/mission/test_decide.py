@@ -143,6 +143,12 @@ def test_phase_that_takes_too_long_ends_as_its_row_says(bench):
     decide(bench.b)
     assert bench.plan.names[bench.tick.mission["phase"][0]] == "abort"
     assert bench.tick.mission["fault"][0] == 0
+    assert bench.tick.mission["unmet"][0] >> SIGNAL["uav_error"] & 1
+    # What it waited for says nothing of a phase that was left for another reason.
+    bench.enter("guide")
+    bench.m["arm_tick"] = 900
+    decide(bench.b)
+    assert bench.tick.mission["unmet"][0] == 0
 
 
 @pytest.mark.parametrize(("phase", "held"), [("guide", 0), ("carry", 1), ("holding", 1), ("balancing", 0), ("done", 0)])

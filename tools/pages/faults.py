@@ -6,7 +6,8 @@ from armland.mission.supervisor.faults import LOAD_LEFT, SEEN_S
 from armland.mission.supervisor.remedies import REMEDIES, STANDING
 from armland.mission.supervisor.table import DEBOUNCE_S, ESCALATION, FAULT_TABLE, FAULTS, GRAVITY_OF
 from armland.mission.table.phases import KINDS
-from armland.mission.told import LATE_S, LATER_S
+from armland.mission.told import LATE_S, LATER_S, MISSED_SHARE
+from armland.scenario.control import Thrust
 from armland.scenario.faults import Fault
 from armland.scenario.mission import Limits
 from pages.flights import Flight
@@ -44,8 +45,8 @@ _NOTES = """\
   force in the hinge, it is released, and flies by itself.
 - **A UAV with a weak rotor** (70 %) is landed as any other; the take-off does not let it go, because it does not stand level.
 - **A lean is no fault while the UAV is held**: a gust, a blow and a push make a healthy one lean. What it says of its motors counts.
-- **A UAV without power is silent too.** Held, the hinge bears all its weight at once; it leans on the hinge's stops and stays there. In
-  flight it falls.
+- **A UAV without power is silent too.** Held, the hinge bears all its weight at once; it leans on the hinge's stops and stays there.
+  Where it falls onto a magnet that is about to grip, the magnet stays on. In flight it falls.
 - **A plate that sticks in the air pulls with what the UAV's thrust exceeds its weight**: it follows the arm down. So does a UAV that
   has lost a quarter of its thrust while it hung on the arm; the force at the hinge tells them apart, and both are held again.
 - **Images that scatter are told from a marker that leaps** by whether they agree with each other: noise is learnt from the
@@ -109,6 +110,7 @@ def static_part() -> str:
 def signs() -> dict[str, str]:
     """Fault -> its sign with its thresholds."""
     v = Limits()
+    missed = min(v.load_gone_n, MISSED_SHARE * Thrust().slack_n)
     return {
         "non_finite": "any number in the measurement that is not finite",
         "encoder_frozen": "a joint's position repeats bit by bit in two samples, its speed none, while samples arrive",
@@ -143,9 +145,10 @@ def signs() -> dict[str, str]:
         "rotor_lost": "the UAV says that a motor turns slower than it should, while it is held, heard, "
         "and lies on the magnet",
         "uav_tilt": f"tilt above {v.tilt_deg:g}°",
-        "slip": f"plate more than {1e3 * v.slip_m:g} mm off in three smoothed images in a row; "
-        f"without an image of the last {1e3 * SEEN_S:g} ms, less than {LOAD_LEFT:g} of an expected load "
-        f"above {v.load_gone_n:g} N, or two images before that which show it far off, ever further the same way, and nothing felt; "
+        "slip": f"plate more than {1e3 * v.slip_m:g} mm off in three smoothed images in a row, or in one, and less than "
+        f"{LOAD_LEFT:g} felt of an expected load above {missed:g} N; "
+        f"without an image of the last {1e3 * SEEN_S:g} ms, such a load that is gone, or two images before that which show it "
+        "far off, ever further the same way, and nothing felt; "
         "never with a silent UAV",
         "near_limit": f"joint within {v.joint_margin_rad:g} rad of its end, singular value below {v.sigma_min:g}, or joint speed "
         f"above {v.joint_speed_share:g} of its limit",

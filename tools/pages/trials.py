@@ -152,7 +152,6 @@ CELLS: dict[tuple[str, str, str], Cell] = {
     ("takeoff", "wrench_drift", "flight"): Cell(end="done", found="overload", onwards="abort"),
     ("takeoff", "wrench_drift", "touch"): Cell(end="done", found="overload", onwards="abort"),
     # Where the UAV stands or hangs nobody asks its rotors, and the arm has it.
-    ("landing", "power_lost", "touch"): Cell(states=("standing",)),
     ("landing", "power_lost", "cradle"): Cell(end="secured", found="uav_silent"),
     ("takeoff", "power_lost", "ground"): Cell(end="refused", found="uav_silent"),
     ("takeoff", "power_lost", "grip"): Cell(end="secured", found="uav_silent"),

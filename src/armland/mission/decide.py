@@ -9,7 +9,7 @@ from armland.linking import linked, named
 from armland.mission.reference.moves import BACK_OFF, TRACK, YIELD
 from armland.mission.reference.refer import begin_reference
 from armland.mission.supervisor.faults import find_fault, seen_layout, watch_layout
-from armland.mission.table.arrays import GUARDS, next_phase
+from armland.mission.table.arrays import GUARDS, next_phase, unmet
 from armland.mission.table.phases import LINK, MAGNET, SIGNAL, SIGNALS, UAV
 from armland.records import Record
 from armland.rotations import Array, matrix
@@ -78,6 +78,7 @@ def kept_layout() -> np.dtype:
             ("begin", "i8"),  # tick at which the phase began
             ("retries", "i8"),
             ("fault", "i8"),
+            ("unmet", "i8"),  # bits of `arrays.unmet` where the phase before ran out of time, else 0
             ("held", "i8"),  # 1 where the UAV hangs on the arm, also in an end
             ("grip", "f8", (3,)),  # m, end effector where the magnet was switched off last [D]
             ("retreat", "f8"),  # m, from there
@@ -107,12 +108,14 @@ def decide(b: Record) -> None:
     if fault:
         s.fault = fault
     if new != s.phase:
+        late = not fault and new == row.on_timeout and elapsed > row.timeout
+        s.unmet = unmet(s.phase, s, b.table) if late else 0
         enter(new, now, b)
         elapsed = 0.0
     row = b.table.phases[s.phase]
     s.held = 1 if row.held == 1 or (row.final == 1 and row.link == HELD) else 0
     mission.tick, mission.phase, mission.retries, mission.fault = m.tick, s.phase, s.retries, s.fault
-    mission.elapsed = elapsed
+    mission.elapsed, mission.unmet = elapsed, s.unmet
 
 
 @njit(cache=True)

@@ -48,6 +48,9 @@ BALANCE_AGE_S = 0.05
 SETTLE_M = 0.025
 """Height above the rails below which a UAV is set down and not balanced."""
 
+MISSED_SHARE = 0.6
+"""Of the slack that stops the rotors' ramp: a load of so much that is not felt is missed before the ramp comes to its stop."""
+
 CLEAR_M = 0.01
 """Height above them from which the cradle carries nothing."""
 
@@ -140,6 +143,8 @@ def _decide(p: Records, t: Telling) -> None:
     link = 1e-3 * (s.link.uplink_delay_ms + s.link.downlink_delay_ms)
     watch["late"], watch["uav_late"] = max(LATE_S, link + LATER_S), 1e-3 * limits.uav_age_ms
     watch["unexplained"], watch["load_gone"] = limits.unexplained_n, limits.load_gone_n
+    # Where the arm does not take the load over, the ramp stops at its slack: what is gone must be missed before.
+    watch["load_missed"] = min(limits.load_gone_n, MISSED_SHARE * s.control.thrust.slack_n)
     watch["hinge_max"], watch["tilt_max"] = limits.hinge_force_share * s.magnet.rating_n, np.deg2rad(limits.tilt_deg)
     static = ROTORS * s.rotors.max_thrust_n
     # One that flies on with all its thrust need not hover.

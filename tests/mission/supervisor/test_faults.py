@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from armland.mission.reference.moves import BACK_OFF, HOLD, MOVE
-from armland.mission.supervisor.faults import AUTONOMOUS, STATION, find_fault
+from armland.mission.supervisor.faults import AUTONOMOUS, BALANCE, RAMP, STATION, find_fault
 from armland.mission.supervisor.table import FAULT, FAULTS
 from armland.rotations import from_rotation_vector
 
@@ -180,6 +180,23 @@ def test_plate_of_a_silent_uav_is_left_where_it_is(bench):
 def test_load_that_is_gone_is_a_slip_only_where_no_image_says_otherwise(bench, age, force, expected, found):
     bench.kept["estimate"]["grip_tick"], bench.e["hinge_force"][0, 2] = 1000 - age, force
     assert find(bench, 100, expected=expected) == found
+
+
+@pytest.mark.parametrize(("far", "slides"), [(1, 0), (0, 1)])
+def test_one_image_that_is_far_off_is_a_slip_where_the_load_is_gone_with_it(bench, far, slides):
+    bench.kept["estimate"]["grip_far"], bench.kept["estimate"]["grip_slides"] = far, slides
+    bench.kept["estimate"]["grip_tick"], bench.e["hinge_force"] = 950, 0.0
+    assert find(bench, 100, ["slip"], expected=2.5) == "slip"
+    bench.e["hinge_force"][0, 2] = 2.4
+    assert find(bench, 100, ["slip"], expected=2.5) == "none"
+
+
+def test_load_is_missed_before_the_ramp_of_the_rotors_stops_at_its_slack(bench):
+    missed, slack = bench.told["decide"]["watch"]["load_missed"][0], bench.told["act"]["uav"]["force_slack"][0]
+    assert missed < 0.7 * slack
+    bench.kept["estimate"]["grip_tick"], bench.e["hinge_force"] = 0, 0.0
+    assert find(bench, 100, ["slip"], expected=1.05 * missed) == "slip"
+    assert find(bench, 100, ["slip"], expected=0.95 * missed) == "none"
 
 
 def test_joint_beyond_its_speed_is_near_its_limit(bench):
@@ -387,6 +404,15 @@ def test_uav_that_hovers_by_itself_near_all_it_has_is_not_taken_over(bench, shar
     bench.kept["act"]["hover"] = share * bench.told["decide"]["watch"]["hover_max"][0]
     bench.kept["act"]["trimmed"] = trimmed
     assert find(bench, LONG, ["thrust_lost"], held=0, uav=AUTONOMOUS) == found
+
+
+@pytest.mark.parametrize(("left", "found"), [(0.5, "thrust_lost"), (0.0, "none"), (-0.5, "none")])
+def test_uav_is_not_let_go_whose_rotors_would_need_all_they_have_for_what_the_arm_still_carries(bench, left, found):
+    bench.kept["act"]["hover"] = bench.told["decide"]["watch"]["hover_max"][0] - 0.2
+    bench.e["hinge_force"] = [0.0, 0.0, left]
+    assert find(bench, LONG, ["thrust_lost"], uav=BALANCE) == found
+    # Elsewhere the arm carries a share on purpose.
+    assert find(bench, LONG, ["thrust_lost"], uav=RAMP) == "none"
 
 
 @pytest.mark.parametrize(("samples", "found"), [(1, "none"), (2, "encoder_frozen")])

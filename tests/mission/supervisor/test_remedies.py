@@ -5,8 +5,9 @@ import pytest
 
 from armland.mission.registry import MISSIONS
 from armland.mission.supervisor.ends import FINALS, HINGED_FINALS
-from armland.mission.supervisor.remedies import LEARNT, REMEDIES, STANDING, learnt_values, stopped
+from armland.mission.supervisor.remedies import LEARNT, REMEDIES, STANDING, UNMET, learnt_values, stopped
 from armland.mission.supervisor.table import FAULTS
+from armland.mission.table.phases import SIGNAL
 from armland.records import layout
 from armland.scenario import load_scenario
 
@@ -50,6 +51,17 @@ def test_time_out_says_what_was_missing():
     assert "none" not in text
 
 
+def test_time_out_names_the_signals_that_did_not_come():
+    bits = 1 << SIGNAL["uav_seen"] | 1 << SIGNAL["bias_known"]
+    text = stopped("refused", "self_test", "none", "so", MISSIONS["landing"].timeouts, unmet=bits)
+    assert "(the UAV was not seen, the force sensor's zero did not settle)" in text
+    assert "magnet did not" not in text
+
+
+def test_every_signal_has_words_for_where_it_does_not_come():
+    assert UNMET.keys() == SIGNAL.keys()
+
+
 def learnt(**values):
     """What was learnt, with fields of the estimate set."""
     estimate = np.zeros(1, layout("estimate", 7))
@@ -63,7 +75,7 @@ def learnt(**values):
     [
         ("camera_noise", {"camera_noise": 5.8}, "5.8 times"),
         ("link_late", {"uplink": 0.12, "downlink": 0.09}, "120 ms up and 90 ms down"),
-        ("thrust_lost", {"hover": 6.9, "weight": 5.18}, "6.90 N was learnt to carry its 5.18 N"),
+        ("thrust_lost", {"hover": 6.9, "weight": 5.18}, "asked for 6.90 N; its weight was learnt as 5.18 N"),
         ("thrust_short", {"hover": 6.9, "weight": 5.18}, "6.90 N was learnt to carry its 5.18 N"),
         (
             "wrench_drift",

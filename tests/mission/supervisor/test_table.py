@@ -80,9 +80,13 @@ def test_no_end_stops_a_flying_uav():
         assert end is None or (end.uav, end.magnet) == flown_on, fault
 
 
-def test_uav_without_power_is_kept_where_the_arm_has_it_and_made_room_for_where_it_has_not():
+def test_uav_without_power_is_kept_where_the_arm_has_or_may_have_it_and_made_room_for_where_it_has_not():
     row = FAULT_TABLE["power_lost"]
-    assert (row["held"], row["flight"], row["touch"]) == ("holding", "abort", "abort")
+    assert (row["held"], row["flight"], row["touch"]) == ("holding", "abort", "holding")
+
+
+def test_arm_that_something_drives_to_its_limits_while_it_holds_is_braked():
+    assert ESCALATION["holding"]["near_limit"] == FAULT_TABLE["near_limit"]["held"] == "braked_held"
 
 
 def test_blind_camera_matters_only_where_the_arm_goes_by_it():

@@ -5,7 +5,7 @@ import pytest
 
 from armland.errors import ConfigurationError
 from armland.mission.decide import kept_layout
-from armland.mission.table.arrays import CONDITIONS, GUARDS, PHASES, compile_table, next_phase
+from armland.mission.table.arrays import CONDITIONS, GUARDS, PHASES, compile_table, next_phase, unmet
 from armland.mission.table.phases import SIGNAL, Condition, Guard, Phase
 
 TICK_S = 1e-3
@@ -52,6 +52,18 @@ def test_signal_that_is_not_a_number_opens_nothing():
 
 def test_first_guard_goes_before_the_second():
     assert follow(mission(Guard("lost", (NEAR,)), Guard("end", (NEAR,))), [0.001]) == ["lost"]
+
+
+@pytest.mark.parametrize(
+    ("offset", "speed", "missing"), [(0.02, 0.0, ["offset"]), (0.001, np.nan, ["uav_speed"]), (0.001, 0.0, [])]
+)
+def test_what_a_phase_waits_for_in_vain_is_named_by_its_first_guard(offset, speed, missing):
+    bounds = {**BOUNDS, "fast_mps": 0.5}
+    phases = mission(Guard("end", (NEAR, Condition("uav_speed", "<", "fast_mps"))), Guard("lost", (FAR,)))
+    table, kept = compiled(phases, bounds), np.zeros(1, kept_layout())
+    kept["signals"][0, SIGNAL["offset"]], kept["signals"][0, SIGNAL["uav_speed"]] = offset, speed
+    bits = unmet(0, kept[0], table[0])
+    assert [name for name, i in SIGNAL.items() if bits >> i & 1] == missing
 
 
 @pytest.mark.parametrize(("elapsed", "expected"), [(9.9, "begin"), (10.1, "lost")])

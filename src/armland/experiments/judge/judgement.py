@@ -167,7 +167,9 @@ def _stopped(ticks: Ticks, brief: Brief, end: str) -> str:
     fault = brief.faults[int(ticks["mission"]["fault"][-1])]
     # As it was when the fault was found: what is learnt after the end says nothing of its cause.
     found = int(np.argmax(ticks["mission"]["fault"] == ticks["mission"]["fault"][-1])) if fault != "none" else -1
-    return stopped(end, last_flown(ticks, brief), fault, now, brief.timeouts, learnt_values(ticks["estimate"][found]))
+    unmet = int(ticks["mission"]["unmet"][_begin_of_end(ticks, brief)])
+    learnt = learnt_values(ticks["estimate"][found])
+    return stopped(end, last_flown(ticks, brief), fault, now, brief.timeouts, learnt, unmet)
 
 
 def _exceeded(brief: Brief, figures: dict[str, Figures]) -> Iterator[str]:

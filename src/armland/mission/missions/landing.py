@@ -105,7 +105,7 @@ LANDING = Mission(
     ),
     targets=TARGETS,
     timeouts={
-        "self_test": "magnet, bias of the force sensor or sight of the UAV were not ready: check magnet and camera",
+        "self_test": "not all was ready: check magnet, force sensor and camera",
         "guide": "the UAV did not come to its station: check that it obeys and has room",
         "miss": "the capture was missed too often: check wind, marker, magnet and force sensor",
         "hand_over": "the arm did not take the weight over: check that the UAV obeys its thrust command",

@@ -128,7 +128,7 @@ TAKEOFF = Mission(
     targets=TARGETS,
     thresholds=lambda _: {"current_gone_s": CURRENT_GONE_S, "flown_s": FLOWN_S},
     timeouts={
-        "self_test": "magnet, bias of the force sensor or sight of the UAV were not ready: check magnet and camera",
+        "self_test": "not all was ready: check magnet, force sensor and camera",
         "reach": "the arm did not arrive below the UAV: look for what is in its way",
         "touch": "the arm did not feel the plate: check that the UAV stands in the cradle",
         "grip": "the hinge did not come free of force: look for what has jammed",

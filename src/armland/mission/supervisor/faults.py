@@ -89,7 +89,8 @@ def watch_layout() -> np.dtype:
             ("arm_age", "i8"),  # ticks
             ("wrench_age", "i8"),  # ticks
             ("unexplained", "f8"),  # N, hinge force that load and thrust need not explain
-            ("load_gone", "f8"),  # N, least load that can be missed
+            ("load_gone", "f8"),  # N, load of which less than `LOAD_LEFT` is felt where nothing is left of it
+            ("load_missed", "f8"),  # N, least load that is missed
             ("late", "f8"),  # s, delay of the link, both ways, beyond which the UAV cannot be guided
             ("uav_late", "f8"),  # s, delay of one way beyond which it cannot be held either
             ("hinge_max", "f8"),  # N
@@ -192,6 +193,7 @@ def _load_signs(
     signs: np.ndarray,
 ) -> None:
     force = _force(e)
+    missed = expected > p.load_missed and force < LOAD_LEFT * expected
     # Nor does a UAV that the magnet has caught ever come to rest for a sensor whose zero runs away.
     signs[WRENCH_DRIFT] = abs(e.hinge_force[2] - expected) > p.unexplained or runs_away
     signs[OVERLOAD] = force > min(force_max, p.hinge_max)
@@ -199,13 +201,11 @@ def _load_signs(
         # It could not be given its thrust back: it is better off lying on the magnet.
         signs[SLIP] = False
     elif (m.tick - known.grip_tick) * p.tick_s < SEEN_S:
-        # A single image errs by as much now and then, and stands for longer where the next one is lost.
-        signs[SLIP] = known.grip_far >= 3
+        # A single image errs by as much now and then, and stands for longer where the next one is lost: with it the load must go.
+        signs[SLIP] = known.grip_far >= 3 or (missed and known.grip_far + known.grip_slides > 0)
     else:
-        # Nobody sees it: what the arm should carry is not there.
-        signs[SLIP] = expected > p.load_gone and force < LOAD_LEFT * expected
-        # It was seen to slide, left the view, and nothing is felt of it.
-        signs[SLIP] = signs[SLIP] or (known.grip_slides > 1 and force < LOAD_LEFT * p.load_gone)
+        # Nobody sees it: what the arm should carry is not there, or it was seen to slide, left the view, and nothing is felt of it.
+        signs[SLIP] = missed or (known.grip_slides > 1 and force < LOAD_LEFT * p.load_gone)
 
 
 @njit(cache=True)
@@ -232,7 +232,9 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     # What is still being learnt says nothing: a sensor that drifts is never done.
     felt_short = row.uav == RAMP and row.link == CAUGHT and abs(kept.act.short) < SHORT_N
     weighed = (row.uav == AUTONOMOUS and kept.act.trimmed > 0) or felt_short or row.uav == BALANCE
-    signs[THRUST_LOST] = sinks or (weighed and kept.act.hover > p.hover_max)
+    # What the arm still carries the rotors would have to give as well.
+    left = max(e.hinge_force[2], 0.0) if row.uav == BALANCE else 0.0
+    signs[THRUST_LOST] = sinks or (weighed and kept.act.hover + left > p.hover_max)
     signs[ARM_BLOCKED] = apart > BLOCKED_M**2
     if kept.act.magnet != 0:
         seen.off, seen.carried, seen.zero = m.tick, row.observe, seen.short

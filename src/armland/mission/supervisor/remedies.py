@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from armland.mission.table.phases import SIGNALS
 from armland.records import Record
 
 REMEDIES: dict[str, tuple[str, str]] = {
@@ -82,12 +83,41 @@ REMEDIES: dict[str, tuple[str, str]] = {
 LEARNT: dict[str, str] = {
     "camera_noise": "by {camera_noise:.1f} times, as its images scatter",
     "link_late": "{uplink_ms:.0f} ms up and {downlink_ms:.0f} ms down, by the stamps",
-    "thrust_lost": "a command of {hover:.2f} N was learnt to carry its {weight:.2f} N",
+    "thrust_lost": "they are asked for {hover:.2f} N; its weight was learnt as {weight:.2f} N, of which {force:.2f} N lie on the hinge",
     "thrust_short": "a command of {hover:.2f} N was learnt to carry its {weight:.2f} N",
     "wrench_drift": "{force:.1f} N were felt; the UAV's weight was learnt as {weight:.2f} N",
     "overload": "{force:.1f} N were felt",
 }
 """Fault -> what was learnt in flight of its cause, from `learnt_values`."""
+
+UNMET: dict[str, str] = {
+    "progress": "the move had not come to its end",
+    "elapsed": "the time that it takes was not over",
+    "uav_seen": "the UAV was not seen",
+    "uav_error": "the UAV was off its station",
+    "uav_speed": "the UAV did not rest",
+    "offset": "the plate was not above the magnet",
+    "relative_speed": "the plate moved against the magnet",
+    "tilt": "the UAV was tilted",
+    "gap": "the plate was off the magnet",
+    "contact": "no contact was felt",
+    "pull": "the pull test was not felt",
+    "thrust_left": "the rotors had not come to their thrust",
+    "arm_share": "the arm did not carry its share",
+    "ground_share": "the cradle did not carry its share",
+    "hinge_force": "the hinge was not free of force",
+    "retreat": "the arm had not drawn back far enough",
+    "magnet_ready": "the magnet did not come to its force",
+    "magnet_fault": "the magnet's driver did not say what it should",
+    "arm_error": "the arm was off its reference",
+    "retries": "the retries were not used up",
+    "bias_known": "the force sensor's zero did not settle",
+    "rotors": "the rotors still gave thrust",
+    "lean": "the UAV did not take the attitude that was asked of it",
+    "image_offset": "the images showed the plate beside the magnet",
+    "image_gap": "the images showed the plate off the magnet",
+}
+"""Signal of `phases.SIGNALS` -> what is so where a phase waits for it in vain."""
 
 NOISE_TOLD = 2.0
 """Error of the camera over the one that it claims from which on a mission that ran out of time says so."""
@@ -117,7 +147,13 @@ def learnt_values(estimate: Record) -> dict[str, float]:
 
 
 def stopped(
-    end: str, before: str, fault: str, now: str, timeouts: Mapping[str, str], learnt: Mapping[str, float] | None = None
+    end: str,
+    before: str,
+    fault: str,
+    now: str,
+    timeouts: Mapping[str, str],
+    learnt: Mapping[str, float] | None = None,
+    unmet: int = 0,
 ) -> str:
     """One sentence on a mission that ended in `end` after phase `before`.
 
@@ -128,9 +164,12 @@ def stopped(
         now: what arm, magnet and UAV really do, as the record of the flight has it.
         timeouts: of the mission: phase -> why it can run out of time, and what helps.
         learnt: of `learnt_values`, when the fault was found; it is left out where nothing is given.
+        unmet: bit i where the phase waited for signal i of `SIGNALS` in vain.
     """
     if fault not in REMEDIES:
         why = timeouts.get(before, "time was over")
+        missing = [UNMET[name] for i, name in enumerate(SIGNALS) if unmet >> i & 1]
+        why += f" ({', '.join(missing)})" if missing else ""
         if learnt and learnt["camera_noise"] > NOISE_TOLD:
             why += f"; the camera errs {learnt['camera_noise']:.1f} times what it claims"
         return f"ended in {end} after {before}: {why}; now {now}"

@@ -19,7 +19,7 @@ FAULT_TABLE: dict[str, dict[str, str]] = {
         "non_finite": "refused        abort       abort       holding     secured     secured     -",
         "encoder_frozen": "braked_refused braked_free braked_free braked_held braked_down braked_down -",
         "arm_stale": " braked_refused braked_free braked_free braked_held braked_down braked_down -",
-        "power_lost": "-              abort       abort       holding     -           -           -",
+        "power_lost": "-              abort       holding     holding     -           -           -",
         "link_late": " refused        abort       abort       holding     secured     secured     -",
         "uav_silent": "refused        abort       abort       holding     secured     secured     -",
         "camera_stale": "refused      abort       abort       -           -           secured     -",
@@ -62,6 +62,8 @@ ESCALATION: dict[str, dict[str, str]] = {
         "encoder_frozen": "braked_held",
         "rotor_lost": "balancing",
         "slip": "let_fly",
+        # No impedance holds an arm that something drives there.
+        "near_limit": "braked_held",
     },
     "balancing": {"arm_stale": "braked_held", "encoder_frozen": "braked_held"},
     "secured": {"arm_stale": "braked_down", "encoder_frozen": "braked_down"},

@@ -127,6 +127,25 @@ def next_phase(phase: int, elapsed: float, kept: Record, table: Record) -> int:
 
 
 @njit(cache=True)
+def unmet(phase: int, kept: Record, table: Record) -> int:
+    """What a phase still waits for: bit i is set where its first guard asks for signal i of `SIGNALS`, which is not there.
+
+    Args:
+        phase: index.
+        kept: has `signals` as in `SIGNALS`.
+        table: `TABLE`.
+    """
+    p, bits = table.phases[phase], 0
+    if p.first == p.end:
+        return bits
+    for i in range(table.guards[p.first].first, table.guards[p.first].end):
+        c = table.conditions[i]
+        if not c.sign * kept.signals[c.signal] > c.sign * c.threshold:
+            bits |= 1 << c.signal
+    return bits
+
+
+@njit(cache=True)
 def _open(g: Record, kept: Record, table: Record) -> bool:
     for i in range(g.first, g.end):
         c = table.conditions[i]
