@@ -6,7 +6,6 @@ import pytest
 from armland.control.laws.settings import row_of
 from armland.mission.belief import flyer
 from armland.mission.feasibility.launch import Launch
-from armland.mission.feasibility.weight import HOVER_SHARE
 from armland.mission.told import Telling, tell
 from armland.models.posture import UPRIGHT
 from armland.scenario import load_scenario
@@ -45,7 +44,7 @@ def test_deciding_knows_ages_in_its_units_and_shares_of_the_magnets_rating(told,
     assert watch["tilt_max"] == pytest.approx(np.pi / 6.0)
     assert watch["thrust_max"] == pytest.approx(0.94 * 4 * 1.86)
     # What a UAV may need in hover, of what its rotors give at most.
-    assert watch["hover_max"] == pytest.approx(HOVER_SHARE * 4 * 1.86)
+    assert watch["hover_max"] == pytest.approx(0.96 * 0.94 * 4 * 1.86 * np.cos(0.3))
 
 
 def test_balance_knows_its_reach_in_capture_points_and_the_wrist(told):

@@ -16,7 +16,7 @@ from armland.mission.belief import Flyer
 from armland.mission.board import board_layout
 from armland.mission.feasibility.launch import Launch
 from armland.mission.feasibility.room import room
-from armland.mission.feasibility.weight import HOVER_SHARE
+from armland.mission.feasibility.weight import hover_max
 from armland.mission.reference import view
 from armland.mission.table.mission import Start
 from armland.models.arm import ArmModel
@@ -149,7 +149,7 @@ def _decide(p: Records, t: Telling) -> None:
     static = ROTORS * s.rotors.max_thrust_n
     # One that flies on with all its thrust need not hover.
     watch["thrust_max"] = s.control.thrust.ceiling * static
-    watch["hover_max"] = np.inf if s.place.fly_on else HOVER_SHARE * static
+    watch["hover_max"] = np.inf if s.place.fly_on else hover_max(s)
     watch["joint_margin"], watch["sigma_min"] = limits.joint_margin_rad, limits.sigma_min
     watch["speed_share"] = limits.joint_speed_share
 

@@ -52,7 +52,7 @@ def test_weight_that_no_speed_of_this_kind_carries_is_refused():
     checked({**heavy, "place": {"fly_on": True, "takeoff_velocity_mps": [0.0, -0.6, 0.0]}}, takes_off=True)
     checked(heavy, takes_off=True, trial=True)
     # Landing it needs a hover with room for control.
-    with pytest.raises(ConfigurationError, match=r"of which 6\.70 N may go into hovering"):
+    with pytest.raises(ConfigurationError, match=r"of which 6\.41 N may go into hovering"):
         checked(heavy)
 
 

@@ -15,7 +15,8 @@ from armland.mission.reference.launch import leave, run_up
 from armland.mission.reference.septic import PEAK
 from armland.mission.table.phases import Phase
 from armland.models.arm import ArmModel
-from armland.models.posture import REACHED_M, lead, pose
+from armland.models.nearby import body_of, reached
+from armland.models.posture import lead
 from armland.rotations import Array
 from armland.scenario import Scenario
 
@@ -39,6 +40,9 @@ MARGIN_RAD = 0.15
 
 BELOW_M = 0.15
 """How far all joints but the last stay below the end effector: the arm under the UAV."""
+
+STEPS = 30
+"""Newton steps to a point of the path, at most."""
 
 POINTS, APPROACH = 41, 12
 """Of the path that is checked, and on the line from `launch_m` to its begin."""
@@ -168,26 +172,28 @@ def displacement(times: Array, run_up_s: float, depth: float) -> tuple[Array, Ar
 
 def _follow(arm: ArmModel, q: Array, points: Array, sigma_min: float) -> NDArray | _Refusal:
     # From the pose at `launch_m` back to the begin, then along the path; on the branch of the kinematics that is known.
-    arm.update(q, np.zeros(arm.joints))
+    still, q, body = np.zeros(arm.joints), q.copy(), body_of(arm)
+    arm.update(q, still)
     length = float(np.linalg.norm(points[-1] - points[0]))
     for point in np.linspace(arm.position.copy(), points[0], APPROACH):
-        q = pose(arm, q, point)
-        if _apart(arm, point) > REACHED_M:
+        if not reached(body, q, point, STEPS, 0.0):
+            arm.update(q, still)
             return _short(arm, point, length, sigma_min)
     out = []
     for point in points:
-        q = pose(arm, q, point)
-        reached, sigma = _apart(arm, point) <= REACHED_M, _smallest(arm)
-        if reached and arm.anchor[:-1, 2].max() > point[2] - BELOW_M:
+        there = reached(body, q, point, STEPS, 0.0)
+        arm.update(q, still)
+        sigma = _smallest(arm)
+        if there and arm.anchor[:-1, 2].max() > point[2] - BELOW_M:
             return _Refusal(5.0, f"at {_text(point)} m the arm would not stay {BELOW_M:g} m below the UAV")
-        if not reached or sigma < SIGMA_SHARE * sigma_min:
+        if not there or sigma < SIGMA_SHARE * sigma_min:
             return _short(arm, point, length, sigma_min)
         margin = np.minimum(q - arm.q_min, arm.q_max - q)
         if margin.min() < MARGIN_RAD:
             name = arm.joint_names[int(margin.argmin())]
             text = f"at {_text(point)} m joint {name} is {margin.min():.2f} rad from its end, bound {MARGIN_RAD:g}"
             return _Refusal(4.0, text)
-        out.append(q)
+        out.append(q.copy())
     return np.array(out)
 
 

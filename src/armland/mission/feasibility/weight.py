@@ -9,8 +9,14 @@ from armland.models.inflow import sustained
 from armland.models.parameters import ROTORS
 from armland.scenario import Scenario
 
-HOVER_SHARE = 0.9
-"""Of the largest static thrust that may go into hovering: the rest is for control."""
+HOVER_SHARE = 0.96
+"""Of the largest lift that station keeping asks for, what may go into hovering: the rest stops a fall."""
+
+
+def hover_max(scenario: Scenario) -> float:
+    """Largest command, N, that may go into hovering: station keeping gives no more than leaves it its largest tilt."""
+    c, most = scenario.control, ROTORS * scenario.rotors.max_thrust_n
+    return HOVER_SHARE * c.thrust.ceiling * most * float(np.cos(c.station.tilt_max_rad))
 
 
 def check_weight(scenario: Scenario, flyer: Flyer, flies_on: bool, trial: bool) -> None:
@@ -42,8 +48,7 @@ def check_weight(scenario: Scenario, flyer: Flyer, flies_on: bool, trial: bool) 
                 f"the UAV weighs {weight:.3f} N; at {speed:.2f} m/s its rotors carry {lift:.3f} N: at most "
                 f"{lift / g:.4f} kg can fly on at that speed"
             )
-    elif weight > HOVER_SHARE * static:
-        lift = HOVER_SHARE * static
+    elif weight > (lift := hover_max(scenario)):
         problems.append(
             f"the UAV weighs {weight:.2f} N; its rotors give {static:.2f} N, of which {lift:.2f} N may go "
             f"into hovering: at most {lift / g:.3f} kg can fly"
