@@ -29,6 +29,8 @@ test: $(STAMP) ## run the checks: ruff, mypy, pytest without the slow tests; ARG
 	.venv/bin/ruff check .
 	.venv/bin/ruff format --check .
 	.venv/bin/mypy
+	@# In two processes, before two workers of pytest compile the same.
+	@.venv/bin/python -c 'from armland.cli.console import ready; ready()'
 	$(PYTEST) -m 'not slow' $(ARGS)
 
 check: test ## the same as test

@@ -313,7 +313,9 @@ def test_law_that_fails_in_flight_ends_in_a_safe_state_and_is_named(armland, tmp
     assert result["state"] == "held"
 
 
-def test_another_arm_lands_without_being_told_its_pose(armland, tmp_path):
-    arm = str(ROOT / "examples" / "six_axis.urdf")
+@pytest.mark.parametrize("file", ["seven_axis.urdf", pytest.param("six_axis.urdf", marks=pytest.mark.slow)])
+def test_another_arm_lands_without_being_told_its_pose(armland, tmp_path, file):
+    """Another number of joints is compiled anew."""
+    arm = str(ROOT / "examples" / file)
     done = armland("land", "--arm", arm, "--ee", "tool0", "--no-figures", "--no-log", "--out", "out", "--json")
     assert (done.code, json.loads(done.out)["state"]) == (0, "standing"), done.err

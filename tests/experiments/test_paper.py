@@ -88,6 +88,28 @@ def test_each_verdict_can_fail(change, claim):
     assert [v.claim.startswith(claim) for v in judge(bad) if not v.holds] == [True]
 
 
+def test_none_overshoots_less_than_none():
+    runs = {"E1": metrics(overshoot_m=[0.0] * 3), "E2": metrics(attitude_max_deg=6.8, overshoot_m=[0.0] * 3)}
+    assert all(v.holds for v in judge(runs))
+    runs["E1"] = runs["E2"] = metrics(attitude_max_deg=8.0)
+    assert [v.holds for v in judge(runs) if "overshoots" in v.claim] == [False] * 3
+
+
+def test_another_arm_is_judged_by_what_the_paper_claims_of_any():
+    """Its two angles are shown; E3 need be better than E2, and not by how much."""
+    runs = {
+        "E1": metrics(attitude_max_deg=3.0),
+        "E2": metrics(attitude_max_deg=20.0, overshoot_m=[0.001] * 3),
+        "E3": metrics(position_rms_m=[0.001, 0.001, 0.0039]),
+    }
+    verdicts = judge(runs, own=False)
+    assert [(v.claim[:2], v.holds) for v in verdicts] == [("E1", None), ("E2", None), *[("E2", True)] * 3, ("E3", True)]
+    assert all("not judged of another arm" in v.claim for v in verdicts[:2])
+    assert "clearly" not in verdicts[-1].claim
+    runs["E3"] = metrics(position_rms_m=[0.001, 0.001, 0.0041])
+    assert judge(runs, own=False)[-1].holds is False
+
+
 @pytest.mark.parametrize(("value", "holds"), [(0.9, False), (1.0, True), (1.5, True), (2.0, True), (2.1, False)])
 def test_verdict_holds_up_to_its_bounds(value, holds):
     assert Verdict.within("a claim", value, 1.0, 2.0) == Verdict("a claim", value, [1.0, 2.0], holds)

@@ -33,6 +33,7 @@ def metadata(mission: str, phases: str, legs: list[dict], **more: str) -> dict[s
         "legs": json.dumps(legs),
         "judged_as": "path" if legs else "landing",
         "praise": "done",
+        "arm": "lwr4.xml",
         "timeouts": "{}",
         "criteria": "[]",
         **more,

@@ -143,7 +143,7 @@ def figures_of(outcome: Outcome, limit_nm: Any) -> dict[str, float]:
 
 def _fly(scenario: Scenario) -> tuple[dict[str, float], dict[str, bool]]:
     outcome = run_experiments(prepare(scenario, NAMES))
-    return figures_of(outcome, scenario.link.torque_limit_nm), {v.claim: v.holds for v in outcome.verdicts}
+    return figures_of(outcome, scenario.link.torque_limit_nm), {v.claim: v.holds is True for v in outcome.verdicts}
 
 
 def _fitted(scenario: Scenario, knobs: list[Knob], samples: int, progress: Progress) -> Demonstrator:

@@ -41,7 +41,9 @@ def result_of(logs: Sequence[Log]) -> dict[str, Any]:
 
 def succeeded(result: Mapping[str, Any]) -> bool:
     """Whether the flight succeeded, or all verdicts on experiments hold."""
-    return all(v["holds"] for v in result["verdicts"]) if "experiments" in result else bool(result["success"])
+    return (
+        all(v["holds"] is not False for v in result["verdicts"]) if "experiments" in result else bool(result["success"])
+    )
 
 
 def draw(out: Path, logs: Sequence[Log]) -> list[Path]:

@@ -47,6 +47,7 @@ METADATA = {
     "legs": "[]",
     "judged_as": "landing",
     "praise": "landed",
+    "arm": "lwr4.xml",
     "timeouts": json.dumps({"carry": "the arm did not arrive: look for what is in its way"}),
     "criteria": json.dumps(
         [

@@ -51,6 +51,7 @@ class Brief(NamedTuple):
     praise: str  # What to say where all is well
     criteria: tuple[Criterion, ...]  # Largest values of figures, by `judge.figures.NAMES`
     timeouts: dict[str, str]  # Phase -> why it can run out of time, and what helps
+    arm: str  # Its file
 
 
 def brief_of(metadata: Mapping[str, str]) -> Brief:
@@ -79,6 +80,7 @@ def brief_of(metadata: Mapping[str, str]) -> Brief:
             praise=metadata["praise"],
             criteria=tuple(Criterion(*row) for row in json.loads(metadata["criteria"])),
             timeouts=dict(json.loads(metadata["timeouts"])),
+            arm=metadata["arm"],
         )
     except KeyError as e:
         raise LogError(
@@ -127,6 +129,7 @@ def metadata_of(scenario: Scenario, plan: Plan, scene: Scene) -> dict[str, str]:
         "title": scenario.title,
         "experiment": plan.experiment or "",
         "law": plan.law_name,
+        "arm": scenario.arm.file,
         "seed": str(scenario.run.seed),
         "start": mission.start,
         "judged_as": mission.judged_as,

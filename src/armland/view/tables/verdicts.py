@@ -23,8 +23,10 @@ def titled(title: str, *columns: str, left: Sequence[int] = (0,)) -> Table:
     return table
 
 
-def mark(holds: bool) -> str:
-    """Whether a bound is kept, in colour."""
+def mark(holds: bool | None) -> str:
+    """Whether a bound is kept, in colour; None: it was not judged."""
+    if holds is None:
+        return "[dim]shown[/]"
     return "[green]holds[/]" if holds else "[red]fails[/]"
 
 
