@@ -57,7 +57,7 @@ def test_bytes_are_a_cdr_payload(message: str, joints: int) -> None:
 def test_n_is_the_number_of_joints(joints: int) -> None:
     assert layout("measurement", joints)["q"].shape == (joints,)
     assert layout("command", joints)["tau"].shape == (joints,)
-    assert layout("truth", joints)["rotor_thrust"].shape == (4,)
+    assert layout("truth", joints)["rotor_thrust"].shape == (8,)
 
 
 def test_unknown_message_is_refused() -> None:

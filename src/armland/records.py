@@ -21,6 +21,9 @@ from armland.compiled import set_up
 
 set_up()
 
+MOST_ROTORS = 8
+"""Rotors that a UAV may have: messages and records hold as many, zero for those that there are not."""
+
 Record = Any
 """A structured record inside compiled code, its fields read and written as attributes."""
 
@@ -57,7 +60,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("wrench", (6,), "N, N·m", "sensor", "force, torque of the flange on the tool at the sensor's origin"),
         Field("uav_quat", (4,), "1", "UAV's W<-B", "attitude as the UAV knows it, scalar first"),
         Field("uav_rate", (3,), "rad/s", "B", "UAV angular velocity"),
-        Field("uav_rotors", (4,), "N", "B", "thrust that the UAV says it asks of each rotor"),
+        Field("uav_rotors", (MOST_ROTORS,), "N", "B", "thrust that the UAV says it asks of each rotor"),
         Field("uav_weak", (), "1", "-", "1 where the UAV says that a rotor gives less than its due", "i8"),
         Field("camera_position", (3,), "m", "camera", "marker's centre"),
         Field("camera_quat", (4,), "1", "camera<-marker", "marker's attitude, scalar first"),
@@ -158,7 +161,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
             "contact force of the arm on cradle, floor, UAV; of the plate on the cradle; of the UAV on the floor: none may be",
         ),
         Field("touching", (), "1", "-", "pads of the magnet in contact with the plate", "i8"),
-        Field("rotor_thrust", (4,), "N", "B", "thrust of each rotor"),
+        Field("rotor_thrust", (MOST_ROTORS,), "N", "B", "thrust of each rotor"),
         Field("tau_uav", (3,), "N·m", "B", "torque of the rotors on the UAV"),
         Field("q", ("n",), "rad", "joint", "true joint positions"),
         Field("tau", ("n",), "N·m", "joint", "joint torques that really acted"),

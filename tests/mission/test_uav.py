@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from armland.mission.reference.guided import CAUGHT_S, SHORT_N
+from armland.mission.reference.guided import CAUGHT_S
 from armland.mission.table.phases import LINK, UAV
 from armland.mission.uav import LEANT_MPS2, RECKONED_S, command_uav
 from armland.records import UavMode
@@ -365,7 +365,7 @@ def hovering_alone(bench, seconds, gives=1.0, lift=(0.0, 0.0, 1.0), sees=True):
     for _ in range(round(seconds * 1000)):
         if bench.m["tick"] % 5 == 0 and sees:
             bench.m["uav_tick"] = bench.m["tick"]
-            bench.m["uav_rotors"] = 0.25 * p["weight"] / gives
+            bench.m["uav_rotors"][0, :4] = 0.25 * p["weight"] / gives
         as_uav(bench, "autonomous")
 
 
@@ -403,7 +403,7 @@ def test_trim_is_not_learnt_of_a_uav_that_does_not_hover(bench, why):
     elif why == "stands on the ground":
         hovering_alone(bench, 1.0, 4.0)
     else:
-        bench.m["uav_rotors"], bench.m["uav_tick"] = 2.0, 0
+        bench.m["uav_rotors"], bench.m["uav_tick"] = 1.0, 0
         hovering_alone(bench, 1.0, sees=False)
     assert bench.kept["act"]["hover"][0] == 4.0
 
@@ -560,7 +560,7 @@ def test_thrust_that_is_missing_is_felt_by_the_arm_below_a_caught_uav(bench, los
 @pytest.mark.parametrize("zero", [-0.5, 0.2])
 def test_healthy_uav_is_not_thought_weak_by_a_drifting_sensor(bench, zero):
     weight = bench.told["act"]["uav"]["weight"][0]
-    assert abs(zero) < SHORT_N or zero < 0.0
+    assert abs(zero) < bench.told["act"]["uav"]["shortfall"][0] or zero < 0.0
     assert caught(bench, 0.0, CAUGHT_S + 1.2, zero) == weight
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from armland.errors import ModelError
 from armland.models.description import ASSETS
-from armland.models.parameters import arm_model, plate_mass, rotor_mixer, uav_parameters
+from armland.models.parameters import arm_model, plate_mass, rotor_effect, uav_parameters
 from armland.scenario import load_scenario
 
 
@@ -45,8 +45,10 @@ def test_file_without_what_is_needed_is_refused_with_what_is_missing(scenario, t
     file.write_text(
         text.replace('name="rotor_3"', 'name="third"').replace('name="pivot"', 'name="p"'), encoding="utf-8"
     )
-    with pytest.raises(ModelError, match=r"lacks pivot, rotor_3; it needs a body 'uav' and the sites cm, pivot"):
-        rotor_mixer(scenario.replaced({"uav": {"file": str(file)}}))
+    with pytest.raises(
+        ModelError, match=r"lacks pivot, rotor_3; it needs a body 'uav' and the sites cm, pivot and rotor_1"
+    ):
+        rotor_effect(scenario.replaced({"uav": {"file": str(file)}}))
 
 
 def test_plate_is_a_disc_of_steel_unless_its_mass_is_given(scenario):

@@ -127,7 +127,7 @@ def signs() -> dict[str, str]:
         "thrust_short": f"as `magnet_stuck`, after {1e3 * sign.SANK_M:g} mm, and the hinge force says that the rotors give less "
         f"than asked by {sign.SHORT:g} of the weight",
         "magnet_stuck": f"the magnet off for {sign.STUCK_S:g} s and the arm drawing back: above "
-        f"{sign.STUCK_N:g} N {1e3 * sign.STUCK_M:g} mm away, "
+        f"{v.stuck_n:g} N {1e3 * sign.STUCK_M:g} mm away, "
         f"or the plate within {1e3 * sign.TOUCHES_M:g} mm after {1e3 * sign.FOLLOWED_M:g} mm, "
         "pulling with what the thrust exceeds the weight",
         "arm_blocked": f"end effector more than {1e3 * sign.BLOCKED_M:g} mm off its reference",

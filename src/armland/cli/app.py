@@ -11,8 +11,10 @@ from armland.cli.commands.gains import gains
 from armland.cli.commands.logs import log, report
 from armland.cli.commands.margins import margins
 from armland.cli.commands.paper import paper
+from armland.cli.commands.reach import reach
 from armland.cli.commands.run import land, run, takeoff
 from armland.cli.commands.studies import envelope, takeoff_weight, verify
+from armland.cli.commands.uav import uav
 
 app = typer.Typer(
     name="armland",
@@ -47,6 +49,8 @@ for command in (
     report,
     log,
     arm,
+    uav,
+    reach,
     verify,
     gains,
     envelope,

@@ -120,9 +120,16 @@ ARM = {
 }
 """Options that say which arm, and what of it."""
 
+UAV = option(
+    str | None,
+    "Another UAV: a TOML or MJCF file, or the name of one that comes with armland (ardrone2, crazyflie, x500, hexa10, octo25).",
+    metavar="FILE|NAME",
+)
+
 MADE = {
     "seed": SEED,
     "settings": SETTINGS,
+    "uav": UAV,
     **ARM,
 }
 """Options that a scenario is made by, see `load`."""
@@ -209,6 +216,10 @@ def load(name: str, given: dict[str, Any], hinged: bool = False) -> "Scenario":
         update(overrides, {"arm": changed})
     if given.get("deviation") is not None:
         update(overrides, {"deviation": {"level": given["deviation"]}})
+    if given.get("uav") is not None:
+        from armland.scenario.files.airframe import find_airframe
+
+        update(overrides, {"airframe": str(find_airframe(given["uav"]))})
     update(overrides, parse_settings(given.get("settings") or []))
     loaded = load_scenario(name, overrides)
     return loaded if seed is None else loaded.with_seed(seed)

@@ -16,6 +16,7 @@ from armland.mission.controller import Controller
 from armland.mission.plan import Plan, plan
 from armland.mission.registry import mission_named
 from armland.mission.tuning import fitted
+from armland.models.airframe.sizing import sized
 from armland.plant.simulator import Simulator
 from armland.plant.start import check_start
 from armland.runtime import loops
@@ -85,6 +86,7 @@ def prepare(
     def make(one: Scenario) -> Flight:
         return _prepared(one, mission, law, experiment, trial)
 
+    scenario = sized(scenario)
     try:
         return make(scenario)
     except WorkspaceError as refusal:

@@ -14,7 +14,7 @@ from scipy.stats import qmc
 from armland.experiments.bench import DATA, derived
 from armland.experiments.paper import PUBLISHED, Outcome, Progress, prepare, resting, run_experiments, silent
 from armland.scenario import SCENARIOS, Scenario
-from armland.scenario.files.loading import read_toml
+from armland.scenario.files.toml import read_toml
 
 FIRST_SEED = 1000
 NAMES = ("E1", "E2", "E3")

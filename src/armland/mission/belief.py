@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.models.inflow import Rotors, advance_of, disc_of
-from armland.models.parameters import ROTORS, plate_mass, uav_parameters
+from armland.models.parameters import plate_mass, rotor_count, uav_parameters
 from armland.models.uav import UavParameters
 from armland.scenario import Scenario
 
@@ -48,6 +48,6 @@ def _gravity(scenario: Scenario) -> float:
 
 def rotors_of(scenario: Scenario) -> Rotors:
     """The rotors as momentum theory sees them."""
-    r = scenario.rotors
+    r, count = scenario.rotors, rotor_count(scenario)
     disc = disc_of(r.radius_m, scenario.environment.air_density_kgm3)
-    return Rotors(ROTORS, ROTORS * r.max_thrust_n, disc, r.slope, advance_of(r.slope, r.inflow_ratio))
+    return Rotors(count, count * r.max_thrust_n, disc, r.slope, advance_of(r.slope, r.inflow_ratio))

@@ -9,12 +9,15 @@ from armland.control.laws.settings import row_of
 from armland.control.laws.table import EXACT
 from armland.errors import ConfigurationError
 from armland.mission.belief import Flyer, flyer, hinged
+from armland.mission.feasibility.by_hand import check_by_hand
 from armland.mission.feasibility.capture import check_capture
 from armland.mission.feasibility.keys import check_keys
 from armland.mission.feasibility.launch import Carrying, Launch, plan_launch, timed
+from armland.mission.feasibility.pace import paced
 from armland.mission.feasibility.path import survey_path
 from armland.mission.feasibility.reach import survey, targets
-from armland.mission.feasibility.weight import check_weight, flies_on
+from armland.mission.feasibility.touchdown import gently
+from armland.mission.feasibility.weight import check_hinged_thrust, check_weight, flies_on
 from armland.mission.missions.takeoff import gives_speed
 from armland.mission.reference.path import Leg
 from armland.mission.registry import mission_named
@@ -120,6 +123,7 @@ def _row(scenario: Scenario, mission: Mission, experiment: str | None) -> str:
 
 
 def _path_plan(scenario: Scenario, mission: Mission, law: str | None, row: str) -> Plan:
+    check_hinged_thrust(scenario)
     arm, scenario = arm_model(scenario), tuned(scenario, row)
     c, carried, experiment = scenario.control, hinged(scenario), scenario.experiments[row]
     phases, work = mission.phases(scenario), survey_path(arm, scenario)
@@ -150,10 +154,14 @@ def _flight_plan(scenario: Scenario, mission: Mission, law: str | None, trial: b
     check_weight(scenario, flies, takes_off and flies_on(scenario), trial)
     if not takes_off:
         check_capture(scenario, flies.mass)
+        check_by_hand(scenario, flies)
     phases = mission.phases(scenario)
     # Contradictions are told before the arm is asked where it can go.
     _table(mission, phases, scenario, flies)
     home = survey(arm, scenario, mission, flies.weight)
+    if not takes_off:
+        scenario = gently(scenario, arm, home)
+    phases = paced(phases, mission, arm, home, scenario)
     launch: Launch | None = None
     if takes_off and gives_speed(scenario):
         launch = plan_launch(Carrying(arm, arm.qd_max, flies.mass, scenario), home)

@@ -19,8 +19,8 @@ from armland.mission.feasibility.room import room
 from armland.mission.feasibility.weight import hover_max
 from armland.mission.reference import view
 from armland.mission.table.mission import Start
+from armland.models.airframe.lift import lift_range
 from armland.models.arm import ArmModel
-from armland.models.parameters import ROTORS
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -142,11 +142,11 @@ def _decide(p: Records, t: Telling) -> None:
     watch["arm_age"], watch["wrench_age"] = t.ticks(limits.arm_age_ms), t.ticks(limits.wrench_age_ms)
     link = 1e-3 * (s.link.uplink_delay_ms + s.link.downlink_delay_ms)
     watch["late"], watch["uav_late"] = max(LATE_S, link + LATER_S), 1e-3 * limits.uav_age_ms
-    watch["unexplained"], watch["load_gone"] = limits.unexplained_n, limits.load_gone_n
+    watch["unexplained"], watch["load_gone"], watch["stuck"] = limits.unexplained_n, limits.load_gone_n, limits.stuck_n
     # Where the arm does not take the load over, the ramp stops at its slack: what is gone must be missed before.
     watch["load_missed"] = min(limits.load_gone_n, MISSED_SHARE * s.control.thrust.slack_n)
     watch["hinge_max"], watch["tilt_max"] = limits.hinge_force_share * s.magnet.rating_n, np.deg2rad(limits.tilt_deg)
-    static = ROTORS * s.rotors.max_thrust_n
+    _, static = lift_range(s)
     # One that flies on with all its thrust need not hover.
     watch["thrust_max"] = s.control.thrust.ceiling * static
     watch["hover_max"] = np.inf if s.place.fly_on else hover_max(s)
@@ -178,17 +178,19 @@ def _refer(p: Records, t: Telling) -> None:
 
 
 def _uav(p: Records, t: Telling) -> None:
-    s, c, rotors = t.scenario, t.scenario.control, t.scenario.rotors
+    s, c = t.scenario, t.scenario.control
     station, thrust = c.station, c.thrust
     p["tick_s"], p["mass"], p["weight"], p["gravity"] = t.tick_s, t.flyer.mass, t.flyer.weight, t.flyer.gravity
     p["lever"], p["drag"], p["station"], p["heading"] = t.flyer.body.lever, s.uav.drag_nspm, _station(t), 0.0
     p["thrust_rate"], p["force_slack"], p["balance_rate"] = thrust.rate_nps, thrust.slack_n, thrust.balance_nps_per_n
-    p["thrust_min"] = ROTORS * rotors.min_thrust_n + thrust.floor_n
-    p["thrust_max"], p["hinged"] = thrust.ceiling * ROTORS * rotors.max_thrust_n, c.thrust_n
+    idle, full = lift_range(s)
+    p["shortfall"] = s.limits.shortfall_n
+    p["thrust_min"] = idle + thrust.floor_n
+    p["thrust_max"], p["hinged"] = thrust.ceiling * full, c.thrust_n
     if t.launch is not None:
         p["launch"] = t.launch.velocity
         if s.place.fly_on:
-            p["fly_on"], p["thrust_max"] = 1, ROTORS * rotors.max_thrust_n
+            p["fly_on"], p["thrust_max"] = 1, full
     p["period"], p["hover_s"] = s.run.rate_hz // station.rate_hz, station.hover_s
     p["k_position"], p["k_velocity"], p["k_integral"] = station.k_position, station.k_velocity, station.k_integral
     p["speed_max"], p["integral_max"] = station.speed_max_mps, station.integral_max_mps2

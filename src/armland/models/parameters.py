@@ -6,11 +6,13 @@ import mujoco
 import numpy as np
 
 from armland.errors import ModelError
+from armland.models.airframe.body import described
+from armland.models.airframe.rotor_set import LEAST_ROTORS, RotorSet, alternating, check_rotors, effect_of
 from armland.models.arm import ArmModel
 from armland.models.arm_file.reading import ArmFile, read_arm
 from armland.models.arm_file.table import Asked
 from armland.models.description import compile_spec, mark_end_effector, read_spec, resolve
-from armland.models.uav import UavParameters, mixer
+from armland.models.uav import UavParameters
 from armland.rotations import Array, matrix
 from armland.scenario import Scenario
 
@@ -53,15 +55,12 @@ class _Frame(NamedTuple):
     mass: float
     inertia: Array
     pivot: Array
-    rotors: Array
 
 
 STEEL_KGM3 = 7850.0
 
-ROTORS = 4
-
-ROTOR_SITES = tuple(f"rotor_{i + 1}" for i in range(ROTORS))
-"""Where the rotors are in a UAV's file."""
+STRAIGHT = 1e-9
+"""A rotor's axis that leans by less, rad, stands upright."""
 
 
 def uav_parameters(scenario: Scenario) -> UavParameters:
@@ -85,33 +84,72 @@ def plate_mass(scenario: Scenario) -> float:
     return float(np.pi * plate.radius_m**2 * plate.thickness_m * STEEL_KGM3)
 
 
-def rotor_mixer(scenario: Scenario) -> Array:
-    """Allocation matrix (4, 4) of `models.uav.mixer` for the UAV's file: rotors about the centre of mass.
+def rotor_set(scenario: Scenario) -> RotorSet:
+    """The rotors about the centre of mass: what the section `rotors` says, else the sites `rotor_1`, `rotor_2` ... of the UAV's file.
 
     Raises:
-        ModelError: the file cannot be used or lacks the body `uav` or a site.
+        ModelError: the file cannot be used, or its rotors cannot hold the attitude.
     """
-    return mixer(_frame(scenario).rotors, scenario.rotors.drag_torque_m)
+    r, model = scenario.rotors, compile_spec(uav_file(scenario), f"UAV file {scenario.uav.file!r}")
+    cm, sites = model.site("cm").pos, _rotor_sites(model)
+    place = np.array(r.place_m) if r.place_m is not None else np.array([model.site(s).pos - cm for s in sites])
+    if r.axis is not None:
+        axis = np.array([np.array(a) / np.linalg.norm(a) for a in r.axis])
+    elif r.place_m is not None:
+        axis = np.tile([0.0, 0.0, 1.0], (len(place), 1))
+    else:
+        axis = np.array([matrix(model.site(s).quat)[:, 2] for s in sites])
+    axis[np.hypot(axis[:, 0], axis[:, 1]) < STRAIGHT] = [0.0, 0.0, 1.0]
+    for name, given in (("axis", r.axis), ("spin", r.spin)):
+        if given is not None and len(given) != len(place):
+            raise ModelError(f"rotors.{name} has {len(given)} entries; the UAV has {len(place)} rotors")
+    spin = alternating(place) if r.spin is None else np.array(r.spin, float)
+    found = RotorSet(place, axis, spin)
+    check_rotors(found, r.drag_torque_m, scenario.uav.file)
+    return found
+
+
+def rotor_effect(scenario: Scenario) -> Array:
+    """Thrust, torque and lateral force (6, n) of each rotor's thrust, of `airframe.rotor_set.effect_of`; errors as for `rotor_set`."""
+    return effect_of(rotor_set(scenario), scenario.rotors.drag_torque_m)
+
+
+def rotor_count(scenario: Scenario) -> int:
+    """Number of rotors; errors as for `rotor_set`."""
+    return rotor_set(scenario).number
 
 
 def uav_file(scenario: Scenario) -> mujoco.MjSpec:
-    """The UAV's file: its body `uav`, the sites `cm` and `pivot` and one site for each rotor, all of which it has.
+    """The UAV's file: its body `uav`, the sites `cm` and `pivot` and one site for each rotor, from `rotor_1` on.
 
     Raises:
         ModelError: a file that cannot be used; the message names what it lacks.
     """
-    spec, names = read_spec(resolve(scenario.uav.file), "UAV file"), ("uav", "cm", "pivot", *ROTOR_SITES)
+    if not scenario.uav.file:
+        return described(scenario.uav, scenario.rotors)
+    spec = read_spec(resolve(scenario.uav.file), "UAV file")
     known = {s.name for s in spec.sites} | ({"uav"} & {b.name for b in spec.bodies})
+    names = ["uav", "cm", "pivot"]
+    if scenario.rotors.place_m is None:
+        numbers = [int(n) for n in (s.removeprefix("rotor_") for s in known if s.startswith("rotor_")) if n.isdecimal()]
+        names += [f"rotor_{i + 1}" for i in range(max([*numbers, LEAST_ROTORS if not numbers else 1]))]
     missing = [name for name in names if name not in known]
     if missing:
         raise ModelError(
-            f"UAV file {scenario.uav.file!r} lacks {', '.join(missing)}; it needs a body 'uav' and the sites {', '.join(names[1:])}"
+            f"UAV file {scenario.uav.file!r} lacks {', '.join(missing)}; it needs a body 'uav' and the sites cm, pivot and rotor_1, "
+            "rotor_2 ... with their z axes along the thrust"
         )
     return spec
+
+
+def _rotor_sites(model: mujoco.MjModel) -> list[str]:
+    names = {model.site(i).name for i in range(model.nsite)}
+    count = next(i for i in range(model.nsite + 1) if f"rotor_{i + 1}" not in names)
+    return [f"rotor_{i + 1}" for i in range(count)]
 
 
 def _frame(scenario: Scenario) -> _Frame:
     model = compile_spec(uav_file(scenario), f"UAV file {scenario.uav.file!r}")
     body, cm = model.body("uav"), model.site("cm").pos
-    R, places = matrix(body.iquat), np.array([model.site(name).pos - cm for name in ("pivot", *ROTOR_SITES)])
-    return _Frame(float(body.mass[0]), R @ np.diag(body.inertia) @ R.T, places[0], places[1:])
+    R = matrix(body.iquat)
+    return _Frame(float(body.mass[0]), R @ np.diag(body.inertia) @ R.T, model.site("pivot").pos - cm)

@@ -10,7 +10,7 @@ from armland.control.laws.station_keeping import attitude_of
 from armland.errors import PlantError
 from armland.linking import link
 from armland.mission.controller import Controller
-from armland.models.parameters import ROTORS
+from armland.models.airframe.allocation import share_out
 from armland.plant.block import fly_block
 from armland.plant.cycle import APPLIED, Views, actuate, sense, views_of
 from armland.plant.deviation.bodies import deviate_bodies
@@ -24,7 +24,7 @@ from armland.plant.noise import BLOCK, Noise, NoiseSource
 from armland.plant.pictures import Photographer, Pictures
 from armland.plant.scene.composition import Scene, build_scene
 from armland.plant.world import build_world
-from armland.records import Records, Tick, UavMode, layout
+from armland.records import MOST_ROTORS, Records, Tick, UavMode, layout
 from armland.rotations import Array, from_rotation_vector, matrix, multiply
 from armland.scenario import Scenario
 
@@ -142,7 +142,7 @@ class Simulator:
         told, weight = self.world["told"], float(s.model.body_subtreemass[s.uav_body]) * gravity
         believed, factor = (
             told["onboard"]["mass"][0],
-            0.25 * float(told["rotors"]["gain"].reshape(2, 2).sum(axis=1).sum()),
+            _mean(told["rotors"]["gain"][0, : told["rotors"]["count"][0]]),
         )
         lift = np.array([0.0, 0.0, weight])
         if flying and told["air"]["moves"][0]:
@@ -165,9 +165,19 @@ class Simulator:
 
     def _spin(self, asked: float, thrust: float, factor: float = 1.0) -> None:
         # All rotors turn as if they had been asked for `asked` N long ago, and give `thrust` N upwards.
+        hover = self._hover(asked * factor)
         for name in ("asked", "static", "due", "lift"):
-            self.world["kept"]["rotors"][name] = asked / ROTORS * factor
+            self.world["kept"]["rotors"][name] = hover
         self.data.xfrc_applied[self.scene.uav_body] = [0.0, 0.0, thrust, 0.0, 0.0, 0.0]
+
+    def _hover(self, thrust: float) -> Array:
+        # Thrusts (8,) N that lift without turning; four upright rotors share alike.
+        p, out = self.world["told"]["onboard"]["allocation"], np.zeros(MOST_ROTORS)
+        if p["exact"][0]:
+            out[:4] = thrust / 4
+            return out
+        out[:] = share_out(thrust, np.zeros(3), p[0])
+        return out
 
     def draw_noise(self) -> None:
         """Draw the next block of noise."""
@@ -260,5 +270,10 @@ def _actuate(k: int, world: Records, views: Views, noise: Noise, phase: int, com
 
 
 @njit(cache=True)
+def _mean(gain: Array) -> float:
+    # Added in pairs.
+    return float(np.append(gain, np.zeros(len(gain) % 2)).reshape(-1, 2).sum(axis=1).sum()) / len(gain)
+
+
 def _release(told: Records, kept: Records, frictionloss: Array, solimp: Array) -> None:
     brake.switch(told[0], kept[0], frictionloss, solimp)

@@ -44,7 +44,7 @@ def record(k: int, data: Array, told: Record, rotors: Record, mixer: Array, t: R
         data: MuJoCo's `sensordata` (nsensordata,), in the units of each sensor: m, rad, N, 1 for quaternions.
         told: of `told_layout`.
         rotors: what the rotors keep, of `rotors.kept_layout`.
-        mixer: (4, 4), 1 and m, thrust and torques per rotor's thrust, `models.uav.mixer`.
+        mixer: (4, 8), 1 and m, thrust and torques per rotor's thrust, `models.airframe.rotor_set.effect_of`.
         t: written.
     """
     t.tick = k
@@ -64,7 +64,7 @@ def record(k: int, data: Array, told: Record, rotors: Record, mixer: Array, t: R
     _forces(data, told, t)
     for i in range(3):
         torque = 0.0
-        for j in range(4):
+        for j in range(mixer.shape[1]):
             torque += mixer[i + 1, j] * t.rotor_thrust[j]
         t.tau_uav[i] = torque
 

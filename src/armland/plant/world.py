@@ -5,6 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from armland.models.environment import environment_layout
+from armland.models.parameters import rotor_effect
 from armland.plant import truth
 from armland.plant.devices import (
     air,
@@ -86,7 +87,7 @@ def build_world(scenario: Scenario, scene: Scene, start: Start, drawn: Draw, pha
     imu.tell(t["imu"], scenario, drawn.imu_bias, noisy)
     link.tell(t["link"], scenario)
     rotors.tell(t["rotors"], scenario, scene, drawn.thrust_factor)
-    onboard.tell(t["onboard"], scenario, scene, t["rotors"]["mixer"][0])
+    onboard.tell(t["onboard"], scenario, scene, rotor_effect(scenario))
     motors.tell(t["motors"], scene)
     brake.tell(t["brake"], scenario, scene)
     camera_numbers.tell(t["camera"], scenario, scene)

@@ -33,7 +33,9 @@ class Approach(Section):
     )
     coast_s: of.PositiveSeconds = key(0.06, "in which the reference comes to rest")
     beyond_m: of.Distance = key(0.006, "how far beyond the plate's face the arm would close")
-    lower_mps: of.PositiveSpeed = key(0.03, "speed at which the arm feels for the cradle")
+    lower_mps: of.PositiveSpeed | None = key(
+        None, "speed at which the arm feels for the cradle; if absent 0.03 m/s, or as slow as the magnet bears"
+    )
     give_way_mpns: of.Gain = key(3e-3, "m/s per N of hinge force where the arm gives way")
     give_way_max_m: of.Distance = key(4e-3, "largest displacement of giving way")
 

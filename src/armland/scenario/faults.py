@@ -96,7 +96,7 @@ class Fault(Section):
     )
     after_s: of.Seconds = key(0.0, "time from there")
     lasts_s: of.PositiveSeconds = key(3600.0, "how long it lasts")
-    rotor: Annotated[int, Field(ge=1, le=4)] = key(1, "number of the rotor; only for `rotor_loss`")
+    rotor: Annotated[int, Field(ge=1, le=8)] = key(1, "number of the rotor; only for `rotor_loss`")
     size: Annotated[float, between(-1e4, 1e4)] = key(
         1.0,
         "drift in N/s or rad/s, share of coil, magnet, rotor or thrust that is lost, share of the magnet's rating that "

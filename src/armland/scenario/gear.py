@@ -13,13 +13,11 @@ class Hinge(Section):
         30.0,
         "tilt of the UAV on the plate at which it stops: one whose rotors stand still leans there, clear of the arm",
     )
-    stop_nm: of.PositiveCoefficient = key(
+    stop_nm: of.Gain = key(
         6.0,
         "N·m/rad of the rubber at that end: a UAV that falls against it must not break the plate off the magnet; assumption",
     )
-    stop_nms: of.PositiveCoefficient = key(
-        0.3, "its damping in N·m·s/rad; assumption: three quarters of the critical one"
-    )
+    stop_nms: of.Gain = key(0.3, "its damping in N·m·s/rad; assumption: three quarters of the critical one")
     friction_nm: of.Coefficient = key(0.001, "dry friction, each axis")
     damping_nms: of.Coefficient = key(0.001, "viscous friction in N·m·s/rad, each axis")
 

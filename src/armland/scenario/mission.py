@@ -97,6 +97,10 @@ class Limits(Section):
     impact_n: of.PositiveForce = key(60.0, "hinge force that no healthy flight makes where faces meet")
     unexplained_n: of.PositiveForce = key(2.5, "hinge force that load and thrust need not explain")
     load_gone_n: of.PositiveForce = key(2.0, "a load of this much, of which less than a third is felt, is gone")
+    shortfall_n: of.PositiveForce = key(
+        0.3, "hinge force of a caught UAV from which on it is learnt what its rotors fail to carry"
+    )
+    stuck_n: of.PositiveForce = key(18.0, "pull of a plate that should have come off the magnet, at which it sticks")
     magnet_share: of.PositiveFraction = key(0.9, "share of the rating that the self-test must find")
 
 

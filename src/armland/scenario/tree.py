@@ -18,7 +18,7 @@ from armland.scenario.mission import Bounds, Limits, Place, Run, Trajectory
 from armland.scenario.quantities import Section, key
 from armland.scenario.refusal import problems, refusal
 from armland.scenario.sensing import Camera, Imperfections, Sensors
-from armland.scenario.tables import as_json, orderly, update
+from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.uav import Link, Onboard, Rotors, Uav
 
 HARDWARE = (
@@ -59,6 +59,9 @@ class Scenario(Section):
 
     title: Annotated[str, Field(max_length=200)] = key("untitled", "of figures and reports")
     calibration: of.Text | None = key(None, "file of calibrated values, relative to the scenario's folder")
+    airframe: of.Text | None = key(
+        None, "UAV: a file of its own (TOML or MJCF), or the name of one that comes with armland"
+    )
     run: Run = Run()
     arm: Arm = Arm()
     tool: Tool = Tool()
@@ -97,6 +100,8 @@ class Scenario(Section):
     _overrides: str = PrivateAttr("")
     _own: frozenset[str] = PrivateAttr(frozenset())
     _asked: frozenset[str] = PrivateAttr(frozenset())
+    _changed: frozenset[str] = PrivateAttr(frozenset())
+    _sized: bool = PrivateAttr(False)
 
     @property
     def text(self) -> str:
@@ -118,6 +123,22 @@ class Scenario(Section):
         """Dotted paths of the keys that the user set, in any file of his own or beside it: none that only armland's files set."""
         return self._asked
 
+    @property
+    def settled(self) -> frozenset[str]:
+        """Dotted paths of the keys that no rule may set: those of `asked`, and those that `replaced` has changed."""
+        return self._asked | self._changed
+
+    @property
+    def sized(self) -> bool:
+        """Whether the rules of `models.airframe.sizing` have been applied."""
+        return self._sized
+
+    def resolved(self, changes: dict[str, Any]) -> "Scenario":
+        """The scenario with the nested `changes` that the rules of `models.airframe.sizing` make; errors as for `replaced`."""
+        changed, out = self._changed, self.replaced(changes) if changes else self._with(self.model_copy())
+        out._changed, out._sized = changed, True
+        return out
+
     def replaced(self, changes: dict[str, Any]) -> "Scenario":
         """The scenario with nested `changes`, checked.
 
@@ -127,9 +148,11 @@ class Scenario(Section):
         data = json.loads(self.model_dump_json())
         update(data, json.loads(as_json(orderly(changes, "the changes"))))
         try:
-            return self._with(Scenario.model_validate_json(json.dumps(data)))
+            out = self._with(Scenario.model_validate_json(json.dumps(data)))
         except ValidationError as e:
             raise refusal(e, Scenario, "the scenario as changed") from e
+        out._changed = self._changed | set(leaves(changes))
+        return out
 
     def with_seed(self, seed: int) -> "Scenario":
         """The same scenario with another seed.
@@ -151,6 +174,7 @@ class Scenario(Section):
     def _with(self, other: "Scenario") -> "Scenario":
         # Another scenario of the same source.
         other._text, other._overrides, other._own, other._asked = self._text, self._overrides, self._own, self._asked
+        other._changed, other._sized = self._changed, self._sized
         return other
 
     def _contradictions(self) -> list[str]:
@@ -178,11 +202,16 @@ def _problems(s: Scenario) -> list[str]:
             divisors = [d for d in range(1, rate + 1) if rate % d == 0]
             near = ", ".join(map(str, sorted(sorted(divisors, key=lambda d: abs(d - device))[:3])))
             problems.append(f"{name} = {device} does not divide run.rate_hz = {rate}; nearest that do: {near}")
-    low, high = 4.0 * s.rotors.min_thrust_n, 4.0 * s.rotors.max_thrust_n
-    if s.trajectory is not None and not low <= s.control.thrust_n <= high:
-        problems.append(
-            f"control.thrust_n = {s.control.thrust_n:g} N is beyond the four rotors, which give {low:g} to {high:g} N"
-        )
+    if not s.uav.file:
+        given: dict[str, object] = {
+            "uav.mass_kg": s.uav.mass_kg,
+            "uav.inertia_kgm2": s.uav.inertia_kgm2,
+            "uav.lever_m": s.uav.lever_m,
+        }
+        given["rotors.place_m"] = s.rotors.place_m
+        missing = ", ".join(name for name, value in given.items() if value is None)
+        if missing:
+            problems.append(f"uav.file is empty, so nothing says {missing}")
     carried = 1.0 - s.control.thrust.carry_share
     if s.bounds.share_carried >= carried:
         problems.append(

@@ -7,13 +7,15 @@ from pydantic import Field
 from armland.scenario import quantities as of
 from armland.scenario.quantities import Section, between, key
 
+Spin = Annotated[int, Field(ge=-1, le=1)]
+
 HoverTilt = Annotated[float, between(1e-3, 1.5)]
 
 
 class Uav(Section):
     """The rigid body. Numbers that are absent are those of the file."""
 
-    file: of.Text = key("ardrone2.xml", "UAV that comes with armland, or an MJCF file")
+    file: of.Text = key("ardrone2.xml", "UAV that comes with armland, or an MJCF file; empty where all stands here")
     mass_kg: of.Mass | None = key(None, "without the hinge plate")
     inertia_kgm2: of.Inertia | None = key(None, "about the centre of mass, body axes")
     lever_m: of.Point | None = key(None, "centre of mass to the hinge's pivot, body axes")
@@ -22,10 +24,21 @@ class Uav(Section):
 
 
 class Rotors(Section):
-    """The four rotors, and what motion through the air does to their thrust."""
+    """The rotors, four to eight alike, and what motion through the air does to their thrust."""
 
     rising = (("min_thrust_n", "max_thrust_n", ""),)
 
+    place_m: Annotated[tuple[of.Point, ...], Field(min_length=1, max_length=64)] | None = key(
+        None, "of each rotor from the centre of mass, body axes; the file's sites rotor_1, rotor_2 ... if absent"
+    )
+    axis: Annotated[tuple[of.Direction, ...], Field(min_length=1, max_length=64)] | None = key(
+        None,
+        "the way that each pushes, body axes, a ratio of components; along body z if absent, or as the file's sites point",
+    )
+    spin: Annotated[tuple[Spin, ...], Field(min_length=1, max_length=64)] | None = key(
+        None,
+        "number: 1 where a rotor turns counter-clockwise, seen from above, else -1; alternating about the body if absent",
+    )
     max_thrust_n: of.PositiveForce = key(1.86, "largest thrust of one rotor")
     min_thrust_n: of.Force = key(0.09, "smallest thrust of one rotor (idle)")
     time_constant_s: of.PositiveSeconds = key(0.05, "lag of a rotor's thrust behind its set-point")
@@ -40,6 +53,15 @@ class Rotors(Section):
     inflow_ratio: Annotated[float, between(1e-6, 1.0)] = key(
         0.115, "v_h/ΩR, a ratio; assumption: 3300 turns a minute where the AR.Drone hovers"
     )
+
+    def _contradictions(self) -> list[str]:
+        found = super()._contradictions()
+        if 0 in (self.spin or ()):
+            found.append("spin: 0 is no direction; 1 is counter-clockwise, seen from above, -1 clockwise")
+        for i, axis in enumerate(self.axis or ()):
+            if axis[2] <= 0.0:
+                found.append(f"axis: rotor {i + 1} pushes along {list(axis)}; its z must be above 0: a rotor lifts")
+        return found
 
 
 class Hover(Section):
@@ -69,6 +91,7 @@ class Onboard(Section):
     rotor_watch: Annotated[float, between(0.0, 0.95)] = key(
         0.6, "share of its due thrust below which a rotor counts as lost on board; 0: no watch"
     )
+    watched_n: of.PositiveForce = key(0.3, "thrust from which on a rotor is watched on board")
     watchdog_ms: of.Milliseconds = key(
         300.0, "silence of the link after which the UAV helps itself; assumption, the AR.Drone's lie around it"
     )

@@ -12,12 +12,15 @@ from armland.control.design.margins import Delays
 from armland.control.laws.exact import Reference, exact_law
 from armland.control.laws.limits import feasible, takeover
 from armland.control.laws.rigid_body import UavParameters
+from armland.models.airframe.allocation import allocation_layout, tell_allocation
 from armland.models.uav import mixer
 
 LOW, HIGH = 0.09, 1.86
 POSITION = np.array([[0.127, 0.127, 0.02], [-0.127, 0.127, 0.02], [-0.127, -0.127, 0.02], [0.127, -0.127, 0.02]])
 MIXER = mixer(POSITION, 0.02)
-INVERSE = np.linalg.inv(MIXER)
+TOLD = np.zeros(1, np.dtype(allocation_layout()))
+tell_allocation(TOLD, np.vstack([MIXER, np.zeros((2, 4))]), LOW, HIGH)
+ROTORS = TOLD[0]
 UAV = UavParameters(0.48, np.diag([0.006, 0.007, 0.012]), np.array([0.0, 0.0, -0.06]))
 STILL = Reference(np.array([1.0, 0.0, 0.0, 0.0]), *np.zeros((5, 3)))
 
@@ -32,17 +35,17 @@ def rotors_can(wrench):
 @given(st.floats(-2.0, 9.0), vectors)
 def test_x4_what_is_given_is_what_rotors_can_give_and_all_of_it_if_they_can(thrust, torque):
     torque = 0.4 * torque
-    f_T, tau = feasible(thrust, torque, MIXER, INVERSE, LOW, HIGH)
+    f_T, tau = feasible(thrust, torque, ROTORS)
     assert rotors_can(np.append(f_T, tau))
     if np.abs(np.append(f_T, tau) - np.append(thrust, torque)).max() > 1e-6:
         assert not rotors_can(np.append(thrust, torque))
 
 
 def test_x4_attitude_comes_before_thrust_and_thrust_before_yaw():
-    f_T, tau = feasible(7.4, np.array([0.2, -0.1, 0.0]), MIXER, INVERSE, LOW, HIGH)
+    f_T, tau = feasible(7.4, np.array([0.2, -0.1, 0.0]), ROTORS)
     np.testing.assert_allclose(tau, [0.2, -0.1, 0.0], atol=1e-9)
     assert f_T < 7.0
-    f_T, tau = feasible(4.0, np.array([0.2, -0.1, 0.1]), MIXER, INVERSE, LOW, HIGH)
+    f_T, tau = feasible(4.0, np.array([0.2, -0.1, 0.1]), ROTORS)
     np.testing.assert_allclose([f_T, *tau[:2]], [4.0, 0.2, -0.1], atol=1e-9)
     assert tau[2] < 0.1
 
@@ -87,7 +90,8 @@ def swing(limit, weak=0.4, duration=0.6, dt=1e-3):
     """Largest tilt, rad, and pivot error, m, of a body whose rotors are too weak for a torque of 0.12 N·m over 0.15 s."""
     gains = rule(Wanted(40.0, 1.0), Wanted(15.0, 1.0), UAV, Delays(0.0, 0.0, 0.0)).gains
     phi, rate, y, v = 0.0, 0.0, 0.0, 0.0
-    worst = np.zeros(2)
+    worst, weaker = np.zeros(2), TOLD.copy()
+    tell_allocation(weaker, np.vstack([MIXER, np.zeros((2, 4))]), LOW, weak)
     for i in range(round(duration / dt)):
         R = Rotation.from_rotvec([phi, 0.0, 0.0]).as_matrix()
         q, pivot = np.array([np.cos(phi / 2), np.sin(phi / 2), 0.0, 0.0]), R @ UAV.lever - UAV.lever
@@ -96,7 +100,7 @@ def swing(limit, weak=0.4, duration=0.6, dt=1e-3):
         delta_tau, force = exact_law(
             q, np.array([rate, 0.0, 0.0]), r, np.array([0.0, v, 0.0]), STILL, 2.35, np.zeros(3), UAV, gains
         )
-        f_T, tau = feasible(2.35, delta_tau, MIXER, INVERSE, LOW, weak)
+        f_T, tau = feasible(2.35, delta_tau, weaker[0])
         extra, _ = takeover(R, 2.35 - f_T, delta_tau - tau, UAV.lever, limit)
         force = force + extra
         moment = tau[0] + np.cross(UAV.lever, R.T @ force)[0] + (0.12 if i * dt < 0.15 else 0.0)

@@ -41,8 +41,9 @@ def test_law_is_told_body_gains_rotors_and_limits():
     np.testing.assert_array_equal(p["inertia"], body.inertia)
     np.testing.assert_array_equal(p["lever"], body.lever)
     np.testing.assert_array_equal([p["k1"], p["k2"]], [GAINS.k1, GAINS.k2])
-    np.testing.assert_allclose(p["mixer"] @ p["mixer_inverse"], np.eye(4), atol=1e-12)
-    assert (p["rotor_min"], p["rotor_max"]) == (scenario.rotors.min_thrust_n, scenario.rotors.max_thrust_n)
+    rotors = p["allocation"]
+    np.testing.assert_allclose(rotors["mixer"] @ rotors["mixer_inverse"], np.eye(4), atol=1e-12)
+    assert (rotors["low"], rotors["high"]) == (scenario.rotors.min_thrust_n, scenario.rotors.max_thrust_n)
     assert (p["takeover_limit"], p["attitude"]) == (4.5, 1)
     np.testing.assert_array_equal(p["torque_limit"], scenario.link.torque_limit_nm)
 

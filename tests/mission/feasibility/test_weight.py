@@ -5,7 +5,7 @@ import pytest
 
 from armland.errors import ConfigurationError
 from armland.mission.belief import flyer
-from armland.mission.feasibility.weight import check_weight, flies_on
+from armland.mission.feasibility.weight import check_hinged_thrust, check_weight, flies_on
 from armland.scenario import load_scenario
 
 
@@ -60,3 +60,11 @@ def test_all_that_is_too_weak_is_named_at_once():
     with pytest.raises(ConfigurationError) as refusal:
         checked({"uav": {"extra_mass_kg": 0.5}, "magnet": {"rating_n": 8.0}})
     assert np.all([word in str(refusal.value) for word in ("magnet", "rotors")])
+
+
+def test_thrust_on_the_hinge_lies_within_what_the_rotors_give():
+    check_hinged_thrust(load_scenario("paper", {"control": {"thrust_n": 7.44}}))
+    with pytest.raises(
+        ConfigurationError, match=r"control.thrust_n = 7.5 N is beyond the rotors, which give 0.36 to 7.44 N"
+    ):
+        check_hinged_thrust(load_scenario("paper", {"control": {"thrust_n": 7.5}}))

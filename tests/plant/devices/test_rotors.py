@@ -13,10 +13,10 @@ SPIN = np.array([1.0, -1.0, 1.0, -1.0])
 
 def test_thrusts_are_recorded_with_the_torque_they_make(bench):
     b, thrust = bench(), np.array([0.4, 0.5, 0.7, 0.6])
-    b.kept["rotors"]["lift"] = thrust
+    b.kept["rotors"]["lift"][0, :4] = thrust
     b.read(0)
     torque = [POSITION[:, 1] @ thrust, -POSITION[:, 0] @ thrust, 0.02 * SPIN @ thrust]
-    np.testing.assert_array_equal(b.t["rotor_thrust"][0], thrust)
+    np.testing.assert_array_equal(b.t["rotor_thrust"][0], [*thrust, 0.0, 0.0, 0.0, 0.0])
     np.testing.assert_allclose(b.t["tau_uav"][0], torque, atol=1e-15)
 
 
@@ -29,7 +29,7 @@ def test_rotors_reach_a_share_of_their_set_point_each_tick(bench):
 
 def test_weak_rotor_tilts_the_uav(bench):
     b = bench()
-    b.told["rotors"]["gain"] = [1.0, 0.9, 1.0, 1.0]
+    b.told["rotors"]["gain"][0, :4] = [1.0, 0.9, 1.0, 1.0]
     quarter = 0.25 * b.sim.scenario.control.thrust_n
     wrench, missing = b.act(0), 0.1 * quarter
     expected = [0.0, 0.0, 4.0 * quarter - missing, -missing * 0.127, -missing * 0.127, missing * 0.02]
@@ -69,7 +69,7 @@ def test_thrust_is_momentum_theorys_and_drag_is_linear(flying, velocity, turn):
     wrench, R = moving(b, velocity, turn), matrix(from_rotation_vector(np.array(turn)))
     static, body = b.kept["rotors"]["static"][0], R.T @ np.array(velocity)
     flow = np.hypot(body[0], body[1]), body[2], disc_of(0.1, 1.225), 0.7, advance_of(0.7, 0.115)
-    thrust = sum(s * factor_at_speed(s, *flow) for s in static)
+    thrust = sum(s * factor_at_speed(s, *flow) for s in static[:4])
     np.testing.assert_allclose(
         wrench[:3], thrust * R[:, 2] - 0.22 * np.array([*velocity[:2], 0.0]), rtol=1e-9, atol=1e-12
     )
@@ -103,3 +103,33 @@ def test_gust_acts_as_the_air_that_moves_and_not_on_one_that_drifts_along(flying
     np.testing.assert_array_equal(felt, same)
     np.testing.assert_allclose(felt[:2] - still[:2], 0.22 * wind[:2], atol=1e-12)
     np.testing.assert_allclose(moving(along, wind), still, atol=1e-12)
+
+
+PLACE = [[0.2, 0.0, 0.0], [0.1, 0.17, 0.0], [-0.1, 0.17, 0.0], [-0.2, 0.0, 0.0], [-0.1, -0.17, 0.0], [0.1, -0.17, 0.0]]
+AXIS = [[0.0, 0.3, 0.9], [0.2, -0.1, 0.9], [0.0, 0.2, 0.9], [0.1, -0.3, 0.9], [-0.2, 0.1, 0.9], [0.0, -0.2, 0.9]]
+
+
+@pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (0.2, -0.1, 0.4)])
+def test_tilted_rotors_push_along_their_own_axes(flying, turn):
+    b = flying(inflow=False, drag=0.0, place_m=PLACE, axis=AXIS, spin=[1, -1, 1, -1, 1, -1])
+    b.kept["rotors"]["asked"][0, :6] = b.kept["rotors"]["static"][0, :6] = np.linspace(0.6, 1.1, 6)
+    wrench, R = moving(b, (0.0, 0.0, 0.0), turn), matrix(from_rotation_vector(np.array(turn)))
+    axis = np.array([np.array(a) / np.linalg.norm(a) for a in AXIS])
+    forces = b.kept["rotors"]["lift"][0, :6, None] * axis
+    spin = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+    torque = np.cross(PLACE, forces).sum(axis=0) - 0.02 * spin @ forces
+    np.testing.assert_allclose(wrench, [*(R @ forces.sum(axis=0)), *(R @ torque)], rtol=1e-9, atol=1e-12)
+    assert np.abs(forces.sum(axis=0)[:2]).max() > 0.05
+
+
+def test_a_tilted_rotor_feels_the_air_along_its_own_axis(flying):
+    b, velocity = flying(drag=0.0, place_m=PLACE, axis=AXIS), np.array([0.3, -0.4, 0.6])
+    moving(b, velocity)
+    static, lift = b.kept["rotors"]["static"][0], b.kept["rotors"]["lift"][0]
+    for k, a in enumerate(np.array(AXIS) / np.linalg.norm(AXIS, axis=1)[:, None]):
+        axial = velocity @ a
+        in_plane = np.linalg.norm(velocity - axial * a)
+        expected = static[k] * factor_at_speed(
+            static[k], in_plane, axial, disc_of(0.1, 1.225), 0.7, advance_of(0.7, 0.115)
+        )
+        assert lift[k] == pytest.approx(expected, rel=1e-9)

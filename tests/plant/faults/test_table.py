@@ -1,10 +1,18 @@
 """Faults act when they should and only then, on what they should and on nothing else."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from armland.errors import ConfigurationError
+from armland.plant.faults.table import tell, told_layout
+from armland.plant.scene.composition import build_scene
+from armland.scenario import load_scenario
 from armland.scenario.faults import FAILURES, SHAPES
+
+ARMS = Path(__file__).parents[2] / "data" / "arms"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 @pytest.mark.parametrize(
@@ -138,3 +146,17 @@ def test_fault_of_a_joint_that_is_not_there_is_refused(waiting):
 def test_fault_of_a_device_that_is_not_there_is_refused(hinged, fault):
     with pytest.raises(ConfigurationError, match="cannot act: the mission flies without a"):
         hinged(faults=[fault])
+
+
+@pytest.mark.parametrize(
+    ("file", "link"),
+    [("lwr4.xml", "arm/link_4"), (EXAMPLES / "six_axis.urdf", "arm/link_3"), (ARMS / "eight_axis.xml", "arm/forearm")],
+)
+def test_elbow_is_pushed_where_the_arm_bends(file, link):
+    """The link behind the joint between upper arm and forearm, whatever its number: of six joints the third, of eight the fifth."""
+    arm = {"file": str(file), "ee": None, "elbow_joint": None}
+    faults = [{"kind": "push", "body": "elbow", "size": 5.0}]
+    scenario = load_scenario("landing", {"arm": arm, "place": {"home_deg": None}, "faults": faults})
+    scene, told = build_scene(scenario, "free"), np.zeros(1, told_layout(7))
+    tell(told, scenario, scene, ())
+    assert scene.model.body(int(told["row"]["body"][0, 0])).name == link

@@ -8,7 +8,7 @@ import pytest
 
 from armland.errors import ArmlandError, ConfigurationError
 from armland.scenario import SCENARIOS, Scenario, load_scenario
-from armland.scenario.files.loading import LARGEST
+from armland.scenario.files.toml import LARGEST
 from armland.scenario.refusal import MOST_LINES
 
 PAPER = (SCENARIOS / "paper.toml").read_text("utf-8")
@@ -68,7 +68,7 @@ SPOILT = {
     ),
     "unknown section": (
         appended("[armm]\nfile = 'x'"),
-        ["armm: unknown key; known here: arm, belief, bounds, calibration"],
+        ["armm: unknown key; known here: airframe, arm, belief, bounds, calibration"],
     ),
     "number with a unit": (
         appended('[link]\nwatchdog_ms = "30 ms"'),
@@ -96,10 +96,6 @@ SPOILT = {
     "rate that does not divide": (
         appended("[onboard]\nrate_hz = 300"),
         ["onboard.rate_hz = 300 does not divide run.rate_hz = 1000; nearest that do: ", "250"],
-    ),
-    "thrust beyond the rotors": (
-        changed("[rotors]\n", "[rotors]\nmax_thrust_n = 0.1\n"),
-        ["control.thrust_n = ", " N is beyond the four rotors, which give ", "to 0.4 N"],
     ),
     "move in no time": (NO_TIME, ["trajectory.moves.0.duration_s: 0.0 lies outside 1e-06 to 3600"]),
     "table that is a number": (

@@ -7,6 +7,7 @@ from rich.console import Console
 
 from armland.cli import options
 from armland.cli.commands.arm import tell_arm
+from armland.cli.commands.uav import tell_uav
 from armland.cli.console import diagnostics, flights_told, phases_told, ready
 from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
@@ -31,6 +32,8 @@ same keys does in a scenario's file.
 `--set deviation.uav.mass=0.1` gives one deviation a range of its own.
 
 `armland COMMAND --arm my_arm.urdf --ee tool0` puts your own arm in the LWR's place.
+
+`armland COMMAND --uav x500` lands another UAV, one that comes with armland or your own as a file; `armland uav x500` says what of it.
 
 `armland COMMAND --law my_file.py:my_law` controls the held UAV by your own law.
 
@@ -98,6 +101,7 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
         # What all sources give, unless the user says otherwise: a demonstrator differs from what is believed of it. The log says so.
         loaded = options.load(name, {**given, "deviation": "published"}, hinged)
     tell_arm(loaded, diagnostics())
+    tell_uav(loaded, diagnostics())
     console = ready()
     from armland.experiments.episode import prepare
 

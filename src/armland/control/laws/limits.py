@@ -1,4 +1,4 @@
-"""Actuator limits (X.4): what the four rotors can give, and what the arm takes over.
+"""Actuator limits (X.4): what the rotors can give, and what the arm takes over.
 
 A force dF of the arm at the pivot turns the UAV by ρ × (RᵀdF): any moment across ρ, none along it, as the hinge passes no
 torque. Of all forces that make the same moment the shortest is along moment × ρ. It also pushes the UAV off its position,
@@ -17,32 +17,28 @@ All functions are compiled and take one sample: float64 arrays, C-contiguous.
 import numpy as np
 from numba import njit
 
-from armland.models.uav import allocate
+from armland.models.airframe.allocation import share_out
+from armland.records import Record
 from armland.rotations import Array, cross, turned
 
 
 @njit(cache=True)
-def feasible(
-    thrust: float, torque: Array, mixer: Array, inverse: Array, low: float, high: float
-) -> tuple[float, Array]:
+def feasible(thrust: float, torque: Array, p: Record) -> tuple[float, Array]:
     """Thrust, N, and torque (3,), N·m, body, nearest to what is asked that the rotors can give, roll and pitch first.
 
     Args:
         thrust: asked for, N.
         torque: asked for (3,), N·m, body.
-        mixer: (4, 4), 1 and m, of `models.uav.mixer`.
-        inverse: (4, 4), 1 and 1/m, of that; the order of priority is that of `models.uav.allocate`.
-        low: least thrust of a rotor, N.
-        high: largest, N.
+        p: fields of `airframe.allocation.allocation_layout`; the order of priority is that of `share_out` there.
 
     Source: (X.4).
     """
-    rotor = allocate(thrust, torque, inverse, low, high)
+    rotor = share_out(thrust, torque, p)
     lift, given = 0.0, np.zeros(3)
-    for k in range(rotor.shape[0]):
-        lift += mixer[0, k] * rotor[k]
+    for k in range(p.rotors):
+        lift += p.mixer[0, k] * rotor[k]
         for i in range(3):
-            given[i] += mixer[1 + i, k] * rotor[k]  # (X.4)
+            given[i] += p.mixer[1 + i, k] * rotor[k]  # (X.4)
     return lift, given
 
 

@@ -8,7 +8,8 @@ from armland.control.laws.own import OwnLaw, load
 from armland.control.laws.rigid_body import BacksteppingGains, ExactGains, UavParameters, check
 from armland.control.laws.table import ACCELERATIONS, EXTRA_TORQUES, LAWS, OWN, SUPPORTS, told_layout
 from armland.errors import ConfigurationError
-from armland.models.parameters import rotor_mixer
+from armland.models.airframe.allocation import tell_allocation
+from armland.models.parameters import rotor_effect
 from armland.records import Records
 from armland.scenario import Scenario
 from armland.scenario.control import Experiment
@@ -59,9 +60,7 @@ def told(scenario: Scenario, experiment: Experiment, row: Row, uav: UavParameter
     p["support"], p["limited"] = SUPPORTS.index(experiment.support), experiment.limits
     p["mass"], p["inertia"], p["lever"] = uav
     p["k1"], p["k2"], p["k3_attitude"], p["k3"] = gains
-    p["mixer"] = mixer = rotor_mixer(scenario)
-    p["mixer_inverse"] = np.linalg.inv(mixer)
-    p["rotor_min"], p["rotor_max"] = rotors.min_thrust_n, rotors.max_thrust_n
+    tell_allocation(p["allocation"], rotor_effect(scenario), rotors.min_thrust_n, rotors.max_thrust_n)
     p["torque_limit"], p["takeover_limit"] = link.torque_limit_nm, c.takeover_limit_n
     p["tool_mass"], p["preview"] = scenario.tool.tool_mass_kg, preview(scenario)
     return p

@@ -37,6 +37,7 @@ from armland.control.laws.own import GIVEN, call, pack
 from armland.control.laws.realisation import held_acceleration
 from armland.control.laws.rigid_body import BacksteppingGains, ExactGains, Gravity, UavParameters
 from armland.linking import VECTOR, linked, record
+from armland.models.airframe.allocation import allocation_layout
 from armland.models.environment import apparent_gravity, apparent_moment, environment_layout
 from armland.records import Record, tick_layout
 from armland.rotations import Array, cross, matrix, turned
@@ -75,10 +76,7 @@ def told_layout() -> np.dtype:
             ("k3_attitude", "f8"),
             ("tool_mass", "f8"),  # kg, between force-torque sensor and hinge
             ("torque_limit", "f8", (3,)),  # N·m, of Δτ_att over the link
-            ("mixer", "f8", (4, 4)),
-            ("mixer_inverse", "f8", (4, 4)),
-            ("rotor_min", "f8"),  # N
-            ("rotor_max", "f8"),  # N
+            ("allocation", np.dtype(allocation_layout())),
             ("takeover_limit", "f8"),  # N, force of the arm that stands in for torque
         ]
     )
@@ -179,8 +177,7 @@ def held_law(
 def _share(now: State, delta_tau: Array, force: Array, e: Record, p: Record) -> float:
     # Thrust, N, that the rotors give beside the torque; what they do not give is added to the arm's force.
     asked = e.tau_att.copy() + delta_tau
-    mixer, inverse = p.mixer.copy(), p.mixer_inverse.copy()
-    thrust, given = feasible(now.thrust, asked, mixer, inverse, p.rotor_min, p.rotor_max)
+    thrust, given = feasible(now.thrust, asked, p.allocation)
     push, _ = takeover(now.R, 0.0, asked - given, now.uav.lever, p.takeover_limit)
     for i in range(3):
         force[i] += (now.thrust - thrust) * now.R[i, 2] + push[i]

@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from armland.errors import LogError
 from armland.experiments.judge.singularity import Screws, screws_of
+from armland.experiments.judge.solids import solids_of
 from armland.mission.plan import Plan
 from armland.mission.reference.path import Leg
 from armland.mission.supervisor.table import FAULTS
 from armland.mission.table.mission import Criterion
 from armland.plant.scene.composition import Scene
+from armland.plant.scene.uav import UAV
 from armland.rotations import Array
 from armland.scenario import Scenario
 
@@ -44,6 +46,8 @@ class Brief(NamedTuple):
     hold: Hold | None  # None where the scene has no magnet
     screws: Screws  # Of the arm
     gravity: float  # m/s²
+    solids: str  # MJCF, see `solids.solids_of`; empty where nothing can touch, or the log has none
+    uav_cm: Array  # (3,) m, B: centre of mass in the UAV's body of `solids`
     put_down: Array  # (3,) m, D: where the pivot is when the UAV stands in the middle of the cradle
     given: Array  # (3,) m/s, D: velocity that the UAV keeps after the release
     legs: tuple[Leg, ...]  # Of the path that the mission follows; none where it follows none
@@ -73,6 +77,8 @@ def brief_of(metadata: Mapping[str, str]) -> Brief:
             hold=Hold(**hold) if (hold := json.loads(metadata["hold"])) else None,
             screws=Screws(**json.loads(metadata["screws"])),
             gravity=float(metadata["gravity"]),
+            solids=metadata.get("solids", ""),
+            uav_cm=np.array(json.loads(metadata.get("uav_cm", "[0.0, 0.0, 0.0]"))),
             put_down=np.array(json.loads(metadata["put_down"])),
             given=np.array(json.loads(metadata["given"])),
             legs=tuple(_leg(leg) for leg in json.loads(metadata["legs"])),
@@ -116,6 +122,7 @@ def metadata_of(scenario: Scenario, plan: Plan, scene: Scene) -> dict[str, str]:
         "legs": [leg._asdict() for leg in plan.legs],
         "thresholds": plan.thresholds,
         "put_down": np.nan_to_num(scene.put_down),
+        "uav_cm": scene.model.site(f"{UAV}cm").pos,
         "hold": hold._asdict() if "magnet" in scene.parts else None,
         "screws": screws_of(scene)._asdict(),
         "gravity": float(np.linalg.norm(scenario.environment.gravity_mps2)),
@@ -140,6 +147,7 @@ def metadata_of(scenario: Scenario, plan: Plan, scene: Scene) -> dict[str, str]:
         "faults": ",".join(FAULTS),
         "scenario": scenario.model_dump_json(),
         "overrides": scenario.overrides,
+        "solids": solids_of(scene),
     }
     return {**text, **{name: json.dumps(value, default=_plain) for name, value in data.items()}}
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from armland.experiments.judge.brief import Brief, Ticks
 from armland.experiments.judge.contacts import BEFORE_TICKS, Touch, falls, touches
+from armland.experiments.judge.geometry import insides
 from armland.experiments.judge.grip import loads, shear_ratio
 from armland.experiments.judge.singularity import smallest_singular_values
 from armland.rotations import Array
@@ -45,11 +46,13 @@ def excesses(ticks: Ticks, brief: Brief) -> dict[str, Excess]:
     | `hinge_force` | `hinge_max`, N | `truth.hinge_force` |
     | `magnet_pull`, `magnet_shear` | `brief.hold` | see `grip` |
     | `arm_touched_…`, `plate_touched_…`, `uav_touched_…` | 0 N | see `contacts` |
+    | `…_in_…` | 1 mm | the solids at `truth.q`, see `geometry` |
     | `uav_fell` | `FALL_M`, m | see `contacts.falls` |
     """
     found = {**_states(ticks, brief), **_grip(ticks, brief)}
     found |= {name: _touched(touch) for name, touch in touches(ticks, brief).items()}
     fell = falls(ticks, brief)
+    found |= {name: Excess(inside.where, inside.depth, "mm") for name, inside in insides(ticks, brief).items()}
     found["uav_fell"] = Excess(fell > FALL_M, fell, "m")
     return {name: excess for name, excess in found.items() if excess.where.any()}
 

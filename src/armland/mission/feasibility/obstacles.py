@@ -15,10 +15,11 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
+from armland.models.airframe.rotor_set import beams
 from armland.models.arm_file.spec import SHAPE
 from armland.models.arm_file.strength import poses
 from armland.models.description import compile_spec
-from armland.models.parameters import ROTOR_SITES, arm_spec, uav_file, uav_parameters
+from armland.models.parameters import arm_spec, rotor_set, uav_parameters
 from armland.rotations import Array
 from armland.scenario import Scenario
 
@@ -198,16 +199,14 @@ def _add_tool(spec: mujoco.MjSpec, scenario: Scenario) -> str:
 
 def _add_uav(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:
     # Its origin is the centre of mass, as in its file.
-    file, skids, body = uav_file(scenario), scenario.skids, spec.worldbody.add_body(name="uav", mocap=True)
-    at = {s.name: np.array(s.pos) for s in file.sites}
-    rotors, y = [at[name] - at["cm"] for name in ROTOR_SITES], np.array([0.0, skids.half_length_m, 0.0])
-    half = len(rotors) // 2
-    for i in range(half):
-        _add_capsule(body, np.array([rotors[i], rotors[i + half]]), BEAM_RADIUS_M, f"beam_{i}")
+    skids, body = scenario.skids, spec.worldbody.add_body(name="uav", mocap=True)
+    carriers, y = beams(rotor_set(scenario).place), np.array([0.0, skids.half_length_m, 0.0])
+    for i, ends in enumerate(carriers):
+        _add_capsule(body, np.array(ends), BEAM_RADIUS_M, f"beam_{i}")
     for i, x in enumerate((skids.x_m, -skids.x_m)):
         middle = np.array([x, 0.0, skids.z_m])
         _add_capsule(body, np.array([middle - y, middle + y]), skids.radius_m, f"skid_{i}")
-    return [*(f"beam_{i}" for i in range(half)), "skid_0", "skid_1"]
+    return [*(f"beam_{i}" for i in range(len(carriers))), "skid_0", "skid_1"]
 
 
 def _add_cradle(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.mission.feasibility.obstacles import Obstacles
-from armland.mission.feasibility.way import AT_ONCE, AT_THE_ENDS_M, MARGINS, SIGMAS, Stop, hasty, sinking
+from armland.mission.feasibility.way import AT_ONCE, AT_THE_ENDS_M, MARGINS, SIGMAS, Stop, sinking
 from armland.models.arm import ArmModel
 from armland.models.arm_file.strength import poses, reach
 from armland.models.description import EE_SITE
@@ -98,6 +98,17 @@ def places(bench: Bench, keep: frozenset[str]) -> Iterator[list[Place]]:
         yield _along(bench, heading, keep, apart)
 
 
+def everywhere(bench: Bench) -> list[Place]:
+    """All places of all headings that are found from all branches: slower than `places`, which ends when it has enough."""
+    return [place for heading, apart in TRIED for place in _along(bench, heading, frozenset(), apart, int(1e9))]
+
+
+def first_axis(arm: ArmModel) -> Array:
+    """Where the arm's first axis meets the floor (3,), m, D; the arm's state is overwritten."""
+    arm.update(np.clip(np.zeros(arm.joints), arm.q_min, arm.q_max), np.zeros(arm.joints))
+    return np.asarray(arm.anchor[0] * [1.0, 1.0, 0.0])
+
+
 class _Search(NamedTuple):
     bench: Bench
     grid: "_Grid"
@@ -105,14 +116,16 @@ class _Search(NamedTuple):
     how: Sinking
 
 
-def _along(bench: Bench, heading: float, keep: frozenset[str], apart: tuple[float, float] | None) -> list[Place]:
+def _along(
+    bench: Bench, heading: float, keep: frozenset[str], apart: tuple[float, float] | None, enough: int = ENOUGH
+) -> list[Place]:
     search = _Search(bench, _Grid(bench, heading, keep, apart), body_of(bench.arm), sinking(bench.arm, bench.scenario))
     found: dict[_Node, Place] = {}
     for q in _branches(search):
         for node, place in _filled(search, q):
             if node not in found or place.merit > found[node].merit:
                 found[node] = place
-        if len(found) >= ENOUGH:
+        if len(found) >= enough:
             break
     return sorted(found.values(), key=lambda p: -p.merit)
 
@@ -247,8 +260,6 @@ def _merit(bench: Bench, q: Array, stop: Stop) -> float | None:
     sigma = float(np.linalg.svd(arm.jacobian, compute_uv=False)[-1])
     needed = np.abs(arm.gravity + 1.5 * bench.weight * arm.jacobian[2]) / arm.tau_max
     if sigma < SIGMAS * limits.sigma_min or needed.max() > 0.9:
-        return None
-    if stop.slack == 0.0 and hasty(arm, bench.scenario) is not None:
         return None
     room = bench.obstacles.nearest(q, stop.pivot, stop.slack, any_will_do=True).room
     return None if room < 0.0 else min(margin, 0.4) + 3.0 * min(sigma, 0.15) + 2.0 * room

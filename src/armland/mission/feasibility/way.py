@@ -31,19 +31,12 @@ YIELDING, STEP_RAD = 0.04, 0.1
 """rad per N·m of the wish, and longest step. One over the stiffest push from a joint's end and
 the elbow's pull, 25 N·m/rad: steps do not overshoot."""
 
-SPEEDS = 1.0
-"""Share that a plan may use of the joint speeds at which the supervisor stops the arm."""
-
 MARGINS, SIGMAS = 2.0, 1.2
 """Margin to the joints' ends and smallest singular value that a plan leaves, over those at which the supervisor stops the arm."""
 
 
 AT_THE_ENDS_M = 0.008
 """By how much clearances may be less at the farthest places to which the arm follows the UAV, where it seldom is, m."""
-
-
-MOVES_MPS = 0.306
-"""Fastest move of a landing: the approach's 0.21 m in 1.5 s have 35/16 of that mean at their middle."""
 
 
 class Stop(NamedTuple):
@@ -109,14 +102,6 @@ def sinking(arm: ArmModel, scenario: Scenario) -> Sinking:
     )
 
 
-def hasty(arm: ArmModel, scenario: Scenario) -> int | None:
-    """Index of a joint that would have to turn too fast for a landing's upward move in the present pose; None where none would."""
-    J = arm.jacobian
-    needed = MOVES_MPS * np.abs(J.T @ np.linalg.solve(J @ J.T + 1e-9 * np.eye(6), np.eye(6)[:, 2]))
-    share = needed / (scenario.limits.joint_speed_share * arm.qd_max)
-    return int(share.argmax()) if share.max() > SPEEDS else None
-
-
 def _where(stop: Stop) -> str:
     return f"with the end effector at ({', '.join(f'{x:.2f}' for x in stop.point)}) m"
 
@@ -139,12 +124,6 @@ def _checked(arm: ArmModel, q: Array, stop: Stop, scenario: Scenario, obstacles:
         raise WorkspaceError(
             f"{where} the arm is near a singularity: smallest singular value {sigma:.3f}; a plan leaves {SIGMAS:g} times "
             f"limits.sigma_min, {SIGMAS * limits.sigma_min:g}"
-        )
-    fast = hasty(arm, scenario) if stop.slack == 0.0 else None
-    if fast is not None:
-        raise WorkspaceError(
-            f"{where} joint {arm.joint_names[fast]} would have to turn too fast for a move of {MOVES_MPS:g} m/s upwards; a plan uses "
-            f"{SPEEDS:g} of limits.joint_speed_share = {limits.joint_speed_share:g} of its {arm.qd_max[fast]:.2f} rad/s"
         )
     return near.room
 

@@ -5,8 +5,8 @@ import numpy as np
 from armland.errors import ConfigurationError
 from armland.mission.belief import Flyer, rotors_of
 from armland.mission.missions.takeoff import gives_speed
+from armland.models.airframe.lift import lift_range
 from armland.models.inflow import sustained
-from armland.models.parameters import ROTORS
 from armland.scenario import Scenario
 
 HOVER_SHARE = 0.96
@@ -15,7 +15,7 @@ HOVER_SHARE = 0.96
 
 def hover_max(scenario: Scenario) -> float:
     """Largest command, N, that may go into hovering: station keeping gives no more than leaves it its largest tilt."""
-    c, most = scenario.control, ROTORS * scenario.rotors.max_thrust_n
+    c, (_, most) = scenario.control, lift_range(scenario)
     return HOVER_SHARE * c.thrust.ceiling * most * float(np.cos(c.station.tilt_max_rad))
 
 
@@ -32,8 +32,8 @@ def check_weight(scenario: Scenario, flyer: Flyer, flies_on: bool, trial: bool) 
         ConfigurationError: all that is too weak, each with the number and the bound.
     """
     weight, g = flyer.weight, flyer.gravity
-    rating, share, rotors = scenario.magnet.rating_n, scenario.limits.hinge_force_share, scenario.rotors
-    held, static = share * rating, ROTORS * rotors.max_thrust_n
+    rating, share = scenario.magnet.rating_n, scenario.limits.hinge_force_share
+    held, (_, static) = share * rating, lift_range(scenario)
     problems = []
     if weight > held:
         problems.append(
@@ -55,6 +55,20 @@ def check_weight(scenario: Scenario, flyer: Flyer, flies_on: bool, trial: bool) 
         )
     if problems:
         raise ConfigurationError("\n  ".join(problems))
+
+
+def check_hinged_thrust(scenario: Scenario) -> None:
+    """Refuse a thrust on the hinge that the rotors cannot give.
+
+    Raises:
+        ConfigurationError: the thrust, and what they give.
+    """
+    (low, high), asked = lift_range(scenario), scenario.control.thrust_n
+    if not low <= asked <= high:
+        raise ConfigurationError(
+            f"control.thrust_n = {asked:g} N is beyond the rotors, which give {low:g} to {high:g} N together; "
+            "left out it follows the UAV's weight"
+        )
 
 
 def flies_on(scenario: Scenario) -> bool:

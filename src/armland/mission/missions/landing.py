@@ -89,6 +89,16 @@ TARGETS = {
     "set_down": At("put_down_m", 1.0, "search_m"),
 }
 
+_WAITING = At("catch_m", -1.0, "wait_below_m")
+
+MOVES = {
+    "approach": (_WAITING, At("catch_m", -1.0, "standoff_m")),
+    "miss": (At("catch_m"), _WAITING),
+    "carry": (At("catch_m"), TARGETS["carry"]),
+    "set_down": (TARGETS["carry"], TARGETS["set_down"]),
+    "withdraw": (At("put_down_m"), At("put_down_m", -1.0, "withdraw_m")),
+}
+
 LANDING = Mission(
     name="landing",
     summary="catch a flying UAV and put it down on the cradle",
@@ -104,6 +114,7 @@ LANDING = Mission(
         At("put_down_m", -1.0, "withdraw_m"),
     ),
     targets=TARGETS,
+    moves=MOVES,
     timeouts={
         "self_test": "not all was ready: check magnet, force sensor and camera",
         "guide": "the UAV did not come to its station: check that it obeys and has room",

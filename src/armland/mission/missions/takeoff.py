@@ -118,6 +118,13 @@ TARGETS = {
     "clear": At("catch_m", -1.0, "wait_below_m"),
 }
 
+MOVES = {
+    "reach": (At("put_down_m", -1.0, "withdraw_m"), At("put_down_m", -1.0, "standoff_m")),
+    "lift": (At("put_down_m"), TARGETS["lift"]),
+    "carry_up": (TARGETS["lift"], TARGETS["carry_up"]),
+    "clear": (At("catch_m"), TARGETS["clear"]),
+}
+
 TAKEOFF = Mission(
     name="takeoff",
     summary="lift a UAV from the cradle and let it fly, with a speed if wanted",
@@ -126,6 +133,7 @@ TAKEOFF = Mission(
     uses=(*SHARED, *GEAR, *ON_MAGNET, *LAUNCH),
     points=_points,
     targets=TARGETS,
+    moves=MOVES,
     thresholds=lambda _: {"current_gone_s": CURRENT_GONE_S, "flown_s": FLOWN_S},
     timeouts={
         "self_test": "not all was ready: check magnet, force sensor and camera",

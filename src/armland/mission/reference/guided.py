@@ -16,7 +16,7 @@ from numba import njit
 
 from armland.control.laws.station_keeping import StationGains, StationReference, attitude_of, keep_station
 from armland.models.environment import apparent_gravity
-from armland.records import Record
+from armland.records import MOST_ROTORS, Record
 from armland.rotations import Array, cross, matrix, turned
 
 ALONE_S = 0.2
@@ -28,9 +28,8 @@ TRIM_S = 0.4
 SEEN_S, FADE_S = 0.15, 0.1
 """Age of the newest image from which on the gust that it showed is forgotten, and the time constant of that: gusts end unseen."""
 
-CAUGHT_S, SHORT_S, SHORT_N = 0.3, 0.1, 0.3
-"""Time after which a UAV that was caught rests on the magnet; time constant with which it is felt what its rotors fail to carry; from
-how much on that is learnt."""
+CAUGHT_S, SHORT_S = 0.3, 0.1
+"""Time after which a UAV that was caught rests on the magnet; time constant with which it is felt what its rotors fail to carry."""
 
 MOST_HOVER = 2.0
 """Command over the weight beyond which no rotors' loss is learnt: half the thrust is lost, or the sensor drifts."""
@@ -49,7 +48,9 @@ def learn_trim(b: Record) -> None:
     m, e, p, s = b.tick.measurement, b.tick.estimate, b.told.act.uav, b.kept.act
     if s.alone * p.tick_s < ALONE_S or m.uav_tick == s.trimmed:
         return
-    total = m.uav_rotors[0] + m.uav_rotors[1] + m.uav_rotors[2] + m.uav_rotors[3]
+    total = 0.0
+    for i in range(MOST_ROTORS):
+        total += m.uav_rotors[i]
     if total < LEAST_SHARE * p.weight:
         return
     R, gravity = matrix(e.quat), apparent_gravity(b.environment, e.plate, e.plate_v)
@@ -75,13 +76,13 @@ def learn_shortfall(b: Record) -> None:
     if since * p.tick_s < CAUGHT_S:
         s.short, s.falls_short, s.before = 0.0, 0, s.hover
         seen = p.mass * (p.gravity + s.integral[2] - _gust(b.kept.estimate.plate.bias, 2, p))
-        if since == 0 and seen - s.hover > SHORT_N:
+        if since == 0 and seen - s.hover > p.shortfall:
             s.hover, s.before, s.integral[2] = seen, seen, seen / p.mass - p.gravity
         return
     weight = b.kept.estimate.weight
     missing = e.hinge_force[2] - weight * (1.0 - e.thrust / max(s.hover, 1e-3))
     s.short += p.tick_s / SHORT_S * (missing - s.short)
-    s.falls_short = 1 if s.short > SHORT_N else s.falls_short
+    s.falls_short = 1 if s.short > p.shortfall else s.falls_short
     if s.falls_short:
         more = min(p.tick_s / (2.0 * SHORT_S) * s.hover * missing / weight, MOST_HOVER * weight - s.hover)
         s.hover += more
@@ -96,7 +97,7 @@ def keep_shortfall(p: Record, s: Record) -> None:
         p: what commanding the UAV is told.
         s: what acting keeps; `hover` and the integral are written.
     """
-    if s.falls_short and abs(s.short) > SHORT_N:
+    if s.falls_short and abs(s.short) > p.shortfall:
         s.integral[2] -= (s.hover - s.before) / p.mass
         s.hover = s.before
     s.falls_short = 0

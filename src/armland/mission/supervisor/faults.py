@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from armland.mission.reference.guided import MOST_HOVER, SHORT_N
+from armland.mission.reference.guided import MOST_HOVER
 from armland.mission.reference.moves import BACK_OFF, MOVE, NOD, YIELD
 from armland.mission.supervisor.table import FAULT, FAULTS
 from armland.mission.table.arrays import FAULT_ROWS
@@ -54,6 +54,9 @@ APART_M, FOLLOWS_MPS = 0.015, 0.03
 NOTHING = 0.09
 """Share of the tool's weight below which a sensor that carries it reads nothing."""
 
+LIFTED = 0.6
+"""Share of the tool's weight, beside what load and thrust explain, below which a sensor may read nothing."""
+
 SHORT, SHORT_S = 0.08, 0.05
 """Share of the weight by which a UAV that was let go and lies on the arm gives less than it was asked for; time constant of that."""
 
@@ -66,8 +69,8 @@ NOISY = 25.0
 WEIGHED_S, WEIGHED = 0.45, (0.6, 1.5)
 """Time of the nod after which the tool has been weighed; force found over force expected of a sensor that can be used."""
 
-STUCK_M, STUCK_N, STUCK_S = 0.002, 18.0, 0.2
-"""Way that the reference has drawn back, and force, from which on a plate sticks; time after which the current is gone."""
+STUCK_M, STUCK_S = 0.002, 0.2
+"""Way that the reference has drawn back from which on a plate that pulls sticks; time after which the current is gone."""
 
 FOLLOWED_M, SANK_M, TOUCHES_M = 0.06, 0.1, 0.01
 """Way that the arm has drawn back, and distance of the plate, from which on a plate that is light enough to follow sticks; way after
@@ -91,6 +94,7 @@ def watch_layout() -> np.dtype:
             ("unexplained", "f8"),  # N, hinge force that load and thrust need not explain
             ("load_gone", "f8"),  # N, load of which less than `LOAD_LEFT` is felt where nothing is left of it
             ("load_missed", "f8"),  # N, least load that is missed
+            ("stuck", "f8"),  # N, pull at which a plate sticks
             ("late", "f8"),  # s, delay of the link, both ways, beyond which the UAV cannot be guided
             ("uav_late", "f8"),  # s, delay of one way beyond which it cannot be held either
             ("hinge_max", "f8"),  # N
@@ -137,10 +141,12 @@ def find_fault(expected: float, magnet_on: bool, phase: int, b: Record) -> int:
     _device_signs(magnet_on, b.table.phases[phase].seeks == 1, m, e, b.told.decide.watch, b.kept.estimate, signs)
     row, act = b.table.phases[phase], b.kept.act
     caught = row.uav == RAMP and row.link == CAUGHT
-    runs_away = caught and act.hover > 0.95 * MOST_HOVER * b.kept.estimate.weight and abs(act.short) > SHORT_N
+    runs_away = (
+        caught and act.hover > 0.95 * MOST_HOVER * b.kept.estimate.weight and abs(act.short) > b.told.act.uav.shortfall
+    )
     _load_signs(expected, runs_away, row.force, m, e, b.told.decide.watch, b.kept.estimate, signs)
     _motion_signs(b.table.phases[phase], b, signs)
-    _sensor_signs(b.table.phases[phase], b, signs)
+    _sensor_signs(expected, b.table.phases[phase], b, signs)
     p, health = b.told.decide.watch, b.kept.limit
     sigma = b.kept.estimate.sigma
     signs[NEAR_LIMIT] = (
@@ -230,7 +236,7 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     sinks = row.uav == STATION and known_speed and (sinks or (strains and e.plate_v[2] < -PLUNGES_MPS))
     sinks = sinks or (row.uav == AUTONOMOUS and known_speed and e.plate_v[2] < -PLUNGES_MPS)
     # What is still being learnt says nothing: a sensor that drifts is never done.
-    felt_short = row.uav == RAMP and row.link == CAUGHT and abs(kept.act.short) < SHORT_N
+    felt_short = row.uav == RAMP and row.link == CAUGHT and abs(kept.act.short) < b.told.act.uav.shortfall
     weighed = (row.uav == AUTONOMOUS and kept.act.trimmed > 0) or felt_short or row.uav == BALANCE
     # What the arm still carries the rotors would have to give as well.
     left = max(e.hinge_force[2], 0.0) if row.uav == BALANCE else 0.0
@@ -243,7 +249,7 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     seen.short += p.tick_s / SHORT_S * (e.hinge_force[2] - made - seen.short)
     gone = (m.tick - seen.off) * p.tick_s > STUCK_S and seen.off > 0
     leaves = row.arm == BACK_OFF or row.arm == MOVE
-    pulls = drawn > STUCK_M**2 and _force(e) > STUCK_N
+    pulls = drawn > STUCK_M**2 and _force(e) > p.stuck
     # One that was not carried yet and lies on the arm may be too weak to rise.
     follows = seen.carried == 1 and kept.decide.retreat > FOLLOWED_M and e.plate_age < SEEN_S and gap < TOUCHES_M**2
     # A plate that sticks pulls with all the thrust beyond the weight.
@@ -256,7 +262,7 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
 
 
 @njit(cache=True)
-def _sensor_signs(row: Record, b: Record, signs: np.ndarray) -> None:
+def _sensor_signs(expected: float, row: Record, b: Record, signs: np.ndarray) -> None:
     # Force of an arm that touches nothing and leaps as the tool's weight does whose bridge is dead, reversed or scaled anew; where
     # something may touch, only a reading of nothing at all, not even the tool's weight, is no contact's.
     m, e, p, kept, seen = b.tick.measurement, b.tick.estimate, b.told.decide.watch, b.kept, b.kept.decide.seen
@@ -274,7 +280,9 @@ def _sensor_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     alone = kept.decide.held == 0 and clear and off < FOLLOWS_MPS**2
     quiet = row.arm == NOD or row.arm == BACK_OFF
     leapt = alone and leap > ALIVE_N * tool and sideways < (0.3 * leap) ** 2
-    dead = row.free == 0 and nothing < (NOTHING * tool) ** 2
+    # A UAV whose rotors lift as much as the tool weighs leaves the sensor nothing to read, and all is well.
+    lifted = abs(tool + expected) < LIFTED * tool
+    dead = row.free == 0 and nothing < (NOTHING * tool) ** 2 and not lifted
     signs[WRENCH_WRONG] = signs[WRENCH_WRONG] or (not quiet and (leapt or dead))
 
 

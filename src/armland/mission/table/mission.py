@@ -47,6 +47,8 @@ class Mission(NamedTuple):
     """What the end effector visits, in order; none where the mission follows a path."""
     targets: Mapping[str, At] = MappingProxyType({})
     """Phase that moves -> where it ends; `place.catch_m` for the others."""
+    moves: Mapping[str, tuple[At, At]] = MappingProxyType({})
+    """Phase with a move -> from where to where the end effector then goes, in the order flown: what a slow arm takes longer for."""
     thresholds: Callable[[Scenario], dict[str, float]] = lambda _: {}
     """Thresholds beyond those of `bounds`, by name, in the units of their signals."""
     faults: Mapping[str, Mapping[str, str]] = MappingProxyType(FAULT_TABLE)

@@ -3,16 +3,19 @@
 import numpy as np
 
 from armland.errors import ConfigurationError
-from armland.models.parameters import ROTORS
+from armland.models.parameters import rotor_count
 from armland.plant.deviation.bodies import torque_limits, value
 from armland.plant.deviation.drawn import Values, direction
 from armland.plant.devices import motors
 from armland.plant.devices.camera_numbers import QUEUE
 from armland.plant.devices.link import RING
 from armland.plant.scene.composition import Scene
-from armland.records import Records
+from armland.records import MOST_ROTORS, Records
 from armland.rotations import from_rotation_vector, multiply
 from armland.scenario import Scenario
+
+DISCS_M2 = 4 * 0.1**2
+"""Rotors times the square of their radius, of the UAV for which the share of the downwash is stated: the AR.Drone."""
 
 VERTICAL = 0.5
 """Vertical gusts over horizontal ones, near the ground."""
@@ -37,15 +40,15 @@ def deviate_devices(values: Values, scenario: Scenario, scene: Scene, told: Reco
 
 
 def _rotors(values: Values, scenario: Scenario, scene: Scene, told: Records) -> None:
-    told["gain"] *= (1.0 + value(values, "uav.thrust")) * (1.0 + values.get("uav.rotor", np.zeros(ROTORS)))
+    told["gain"] *= (1.0 + value(values, "uav.thrust")) * (1.0 + values.get("uav.rotor", np.zeros(MOST_ROTORS)))
     told["curve"], rate = value(values, "uav.curve"), scenario.run.rate_hz
     told["sag"], told["drag"] = value(values, "uav.sag_per_s") / rate, told["drag"] * (1.0 + value(values, "uav.drag"))
     constant = scenario.rotors.time_constant_s * (1.0 + value(values, "uav.lag"))
     told["lag"] = 1.0 - np.exp(-1.0 / (rate * constant))
-    # The wrench acts at the true centre of mass, about which the rotors' arms are other ones: roll takes y, pitch −x.
+    # The wrench acts at the true centre of mass, about which the rotors' arms are other ones.
     shift = np.zeros(3) + values.get("uav.cm_m", 0.0)
-    told["mixer"][0, 1] -= shift[1]
-    told["mixer"][0, 2] += shift[0]
+    told["mixer"][0, 1:] -= np.cross(shift, told["axis"][0]).T
+    told["place"] -= shift
 
 
 def _on_board(values: Values, scenario: Scenario, told: Records) -> None:
@@ -141,7 +144,10 @@ def _air(values: Values, scenario: Scenario, told: Records) -> None:
     wind, gust = value(values, "air.wind_mps"), value(values, "air.gust_mps")
     told["mean"] = wind * direction(scenario.run.seed)
     told["sigma"] = gust * np.array([1.0, 1.0, VERTICAL])
-    told["ground"], told["wash"] = value(values, "air.ground_effect"), value(values, "air.downwash")
+    told["ground"], rotors = value(values, "air.ground_effect"), scenario.rotors
+    # The tool meets the wake's pressure, which is the thrust over the area of the discs.
+    area = rotor_count(scenario) * rotors.radius_m**2
+    told["wash"] = value(values, "air.downwash") * min(DISCS_M2 / area, 1.0)
     told["moves"] = bool(wind or gust or told["ground"][0])
 
 

@@ -100,8 +100,8 @@ def find_disturbance(omega: Array, extra: Array, asked: Array, mixer: Array, p: 
     Args:
         omega: measured rates (3,), rad/s, B.
         extra: torque (3,) N·m over the link.
-        asked: thrusts (4,) N that were asked for last.
-        mixer: (4, 4), 1 and m, thrust and torques per rotor's thrust, `models.uav.mixer`.
+        asked: thrusts (8,) N that were asked for last.
+        mixer: (4, 8), 1 and m, thrust and torques per rotor's thrust, `models.airframe.rotor_set.effect_of`.
         p: fields of `attitude_layout`.
         s: `torque`, `impulse`, `momentum` and `disturbance` are updated.
     """
@@ -112,7 +112,7 @@ def find_disturbance(omega: Array, extra: Array, asked: Array, mixer: Array, p: 
     observe_moment(momentum, s.impulse, p.period_s, p.observer, s.momentum, s.disturbance)
     for i in range(3):
         given = -extra[i]
-        for k in range(4):
+        for k in range(mixer.shape[1]):
             given += mixer[i + 1, k] * asked[k]
         s.torque[i] += p.lag_gain * (given - s.torque[i])
         s.impulse[i] = p.period_s * (s.torque[i] - gyroscopic[i])

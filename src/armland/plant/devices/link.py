@@ -20,7 +20,7 @@ from numba import njit
 
 from armland.errors import ConfigurationError
 from armland.plant.noise import uniform
-from armland.records import Record, Records
+from armland.records import MOST_ROTORS, Record, Records
 from armland.rotations import Array
 from armland.scenario import Scenario
 
@@ -49,7 +49,7 @@ SAMPLE = np.dtype(
         ("rate", "f8", (3,)),
         ("heard", "i8"),
         ("echo", "i8"),
-        ("rotors", "f8", (4,)),
+        ("rotors", "f8", (MOST_ROTORS,)),
         ("weak", "i8"),
         ("sent", "i8"),
     ]

@@ -15,17 +15,14 @@ import numpy as np
 from numba import njit
 
 from armland.control.laws.station_keeping import StationGains, StationReference, keep_station
-from armland.models.uav import allocate
+from armland.models.airframe.allocation import allocation_layout, share_out, tell_allocation
 from armland.plant.devices.attitude import attitude_layout, attitude_torque, find_disturbance, tell_attitude
 from armland.plant.devices.link import WEAK_SAMPLES, arrive
 from armland.plant.noise import Noise
 from armland.plant.scene.composition import Scene
-from armland.records import Record, Records, UavMode
+from armland.records import MOST_ROTORS, Record, Records, UavMode
 from armland.rotations import Array
 from armland.scenario import Scenario
-
-WATCHED_N = 0.3
-"""Thrust from which on a rotor is watched, N."""
 
 SPEED_CORRELATED_S = 0.3
 """Correlation time of the error of its own velocity. Assumption: optical flow over moving light and shade."""
@@ -54,6 +51,7 @@ def told_layout(joints: int) -> np.dtype:
             ("climb", "f8"),  # m, by which it climbs away
             ("run_down", "f8"),  # N a sample
             ("watch", "f8"),  # share of its due thrust below which a rotor counts as lost
+            ("watched", "f8"),  # N, thrust from which on a rotor is watched
             ("effectiveness", "f8"),
             ("torque_limit", "f8", (3,)),  # N·m, largest Δτ that it accepts
             ("mass", "f8"),  # kg that it believes
@@ -63,9 +61,7 @@ def told_layout(joints: int) -> np.dtype:
             ("speed_bias", "f8", (3,)),  # m/s
             ("trim", "f8"),  # m/s², by which the integral is off at the start
             *((name, "f8") for name in HOVER),
-            ("rotor_min", "f8"),
-            ("rotor_max", "f8"),
-            ("mixer_inverse", "f8", (4, 4)),
+            ("allocation", np.dtype(allocation_layout())),
             *attitude_layout(),
         ]
     )
@@ -92,10 +88,11 @@ def kept_layout(joints: int) -> np.dtype:
     )
 
 
-def tell(told: Records, scenario: Scenario, scene: Scene, mixer: Array) -> None:
-    """Fill `told` (1,); `mixer` (4, 4), 1 and m, is the rotors', of `models.uav.mixer`."""
+def tell(told: Records, scenario: Scenario, scene: Scene, effect: Array) -> None:
+    """Fill `told` (1,); `effect` (6, n), 1 and m, is the rotors', of `models.airframe.rotor_set.effect_of`."""
     o, rate, link, rotors = scenario.onboard, scenario.run.rate_hz, scenario.link, scenario.rotors
     told["period"], told["watchdog"] = rate // o.rate_hz, round(o.watchdog_ms * rate / 1000.0)
+    told["watched"] = o.watched_n
     told["climb"], told["watch"], told["run_down"] = o.climb_m, o.rotor_watch, o.run_down_nps * (1.0 / o.rate_hz)
     told["effectiveness"], told["torque_limit"] = link.torque_effectiveness, link.torque_limit_nm
     told["mass"], told["hover_noise"] = scene.uav_mass, scenario.imperfections.hover_noise_m
@@ -104,8 +101,7 @@ def tell(told: Records, scenario: Scenario, scene: Scene, mixer: Array) -> None:
     told["k_position"], told["k_velocity"], told["k_integral"] = h.k_position, h.k_velocity, h.k_integral
     told["speed_max"], told["integral_max"] = h.speed_max_mps, h.integral_max_mps2
     told["tilt_max"], told["lift_min"], told["thrust_max"] = h.tilt_max_rad, h.lift_min_n, h.thrust_max_n
-    told["rotor_min"], told["rotor_max"] = rotors.min_thrust_n, rotors.max_thrust_n
-    told["mixer_inverse"] = np.linalg.inv(mixer)
+    tell_allocation(told["allocation"], effect, rotors.min_thrust_n, rotors.max_thrust_n)
     tell_attitude(told, scenario)
 
 
@@ -125,7 +121,7 @@ def fly(k: int, world: Record, noise: Noise, row: int, t: Record) -> None:
     arrive(k, told.link, kept.link, kept.faults, noise.link[row])
     if kept.faults.unpowered:
         s.hovering = 0
-        for i in range(4):
+        for i in range(MOST_ROTORS):
             kept.rotors.asked[i] = 0.0
         return
     arrived = kept.link.arrived
@@ -147,25 +143,25 @@ def fly(k: int, world: Record, noise: Noise, row: int, t: Record) -> None:
             s.thrust = arrived.thrust
     asked = kept.rotors.asked
     if _watch(mode, p, s, kept.rotors) or s.thrust <= 0.0:
-        for i in range(4):
+        for i in range(MOST_ROTORS):
             asked[i] = 0.0
         return
     torque = attitude_torque(kept.imu.quat, kept.imu.rate, q_d, p, s)
     found = find_disturbance(kept.imu.rate, extra, asked, told.rotors.mixer, p, s)
     for i in range(3):
         torque[i] = torque[i] + extra[i] - found[i]
-    rotor = allocate(s.thrust, torque, p.mixer_inverse, p.rotor_min, p.rotor_max)
-    for i in range(4):
+    rotor = share_out(s.thrust, torque, p.allocation)
+    for i in range(MOST_ROTORS):
         asked[i] = rotor[i]
 
 
 @njit(cache=True)
 def _watch(mode: int, p: Record, s: Record, rotors: Record) -> bool:
-    # Each motor's speed is known on board. Held, a UAV with a lost rotor stops the others: all four run down alike, and what
+    # Each motor's speed is known on board. Held, a UAV with a lost rotor stops the others: all run down alike, and what
     # tips it over is no more than what came before. Flying, it has no better choice than to go on.
     weak = False
-    for k in range(4):
-        weak = weak or (rotors.due[k] > WATCHED_N and rotors.static[k] < p.watch * rotors.due[k])
+    for k in range(MOST_ROTORS):
+        weak = weak or (rotors.due[k] > p.watched and rotors.static[k] < p.watch * rotors.due[k])
     s.weak = s.weak + 1 if weak else 0
     s.cut = 1 if mode in (HELD, CAUGHT) and (s.cut or s.weak >= WEAK_SAMPLES) else 0
     return bool(s.cut)

@@ -2,12 +2,12 @@
 
 | symbol | name | unit, frame |
 |---|---|---|
-| T_i* | `asked` (4,): thrust that the controller on board asks of each rotor | N |
-| g_i | `gain` (4,): thrust given over thrust asked for | 1 |
-| T_i | `static` (4,): thrust that each would give at rest, T ← T + α (g h T* − T) with h its health | N |
+| T_i* | `asked` (8,): thrust that the controller on board asks of each rotor | N |
+| g_i | `gain` (8,): thrust given over thrust asked for | 1 |
+| T_i | `static` (8,): thrust that each would give at rest, T ← T + α (g h T* − T) with h its health | N |
 | α | `lag`: share of a step that a rotor makes in one tick | 1 |
-| | `due` (4,): the same where all is well: what each is expected to give | N |
-| | `lift` (4,): thrust that each gives, moving through the air, `models.inflow` (I.2) | N |
+| | `due` (8,): the same where all is well: what each is expected to give | N |
+| | `lift` (8,): thrust that each gives, moving through the air, `models.inflow` (I.2) | N |
 | c | `drag`: linear, horizontal | N·s/m |
 | c_T, T_h | `curve`, `hover`: g grows by c_T (T*/T_h − 1), T_h what each gives in hover | 1, N |
 | | `sag`: share of the thrust that the battery loses in a tick | 1 |
@@ -17,13 +17,12 @@
 import numpy as np
 from numba import njit
 
+from armland.models.airframe.rotor_set import effect_of
 from armland.models.inflow import advance_of, disc_of, factor_at_speed
-from armland.models.parameters import ROTORS
-from armland.models.uav import mixer
+from armland.models.parameters import rotor_set
 from armland.plant.scene.composition import Scene
-from armland.plant.scene.uav import UAV
-from armland.records import Record, Records
-from armland.rotations import Array, from_rotation_vector, matrix, multiply
+from armland.records import MOST_ROTORS, Record, Records
+from armland.rotations import Array, cross, from_rotation_vector, matrix, multiply
 from armland.scenario import Scenario
 
 
@@ -31,10 +30,19 @@ def told_layout(joints: int) -> np.dtype:
     """What the rotors are told."""
     return np.dtype(
         [
-            ("mixer", "f8", (4, 4)),  # [thrust, torque] of the four thrusts, `models.uav.mixer`
+            ("count", "i8"),  # number of rotors
+            (
+                "mixer",
+                "f8",
+                (4, MOST_ROTORS),
+            ),  # [thrust, torque] of the rotors' thrusts, `models.airframe.rotor_set.effect_of`
+            ("tilted", "i8"),  # 1 where some rotor does not push along body z
+            ("lateral", "f8", (2, MOST_ROTORS)),  # force along body x and y of each one's thrust
+            ("place", "f8", (MOST_ROTORS, 3)),  # m, from the centre of mass
+            ("axis", "f8", (MOST_ROTORS, 3)),
             ("lag", "f8"),
             ("tick_s", "f8"),
-            ("gain", "f8", (4,)),
+            ("gain", "f8", (MOST_ROTORS,)),
             ("curve", "f8"),
             ("hover", "f8"),
             ("sag", "f8"),
@@ -51,17 +59,20 @@ def told_layout(joints: int) -> np.dtype:
 
 def kept_layout(joints: int) -> np.dtype:
     """What the rotors keep."""
-    return np.dtype([(name, "f8", (4,)) for name in ("asked", "static", "due", "lift")])
+    return np.dtype([(name, "f8", (MOST_ROTORS,)) for name in ("asked", "static", "due", "lift")])
 
 
 def tell(told: Records, scenario: Scenario, scene: Scene, thrust_factor: float) -> None:
     """Fill `told` (1,); `thrust_factor`, of all rotors, is the ratio of thrust given to thrust asked for."""
     r, rate = scenario.rotors, scenario.run.rate_hz
-    place = np.array([scene.model.site(f"{UAV}rotor_{i + 1}").pos for i in range(ROTORS)])
-    told["mixer"] = mixer(place - scene.model.site(f"{UAV}cm").pos, r.drag_torque_m)
+    own = rotor_set(scenario)
+    effect, n = effect_of(own, r.drag_torque_m), own.number
+    told["count"], told["tilted"] = n, not own.upright
+    told["mixer"][0, :, :n], told["lateral"][0, :, :n] = effect[:4], effect[4:]
+    told["place"][0, :n], told["axis"][0, :n] = own.place, own.axis
     told["lag"], told["tick_s"] = 1.0 - np.exp(-1.0 / (rate * r.time_constant_s)), 1.0 / rate
     told["gain"], told["drag"] = thrust_factor, scenario.uav.drag_nspm
-    told["hover"] = -scenario.environment.gravity_mps2[2] * scene.uav_mass / ROTORS
+    told["hover"] = -scenario.environment.gravity_mps2[2] * scene.uav_mass / n
     told["inflow"], told["slope"] = r.inflow, r.slope
     told["disc"] = disc_of(r.radius_m, scenario.environment.air_density_kgm3)
     told["advance"] = advance_of(r.slope, r.inflow_ratio)
@@ -89,13 +100,13 @@ def spin(k: int, told: Record, kept: Record, faults: Record, air: Record, t: Rec
         turn[i] = t.omega[i] * told.tick_s
     R = matrix(multiply(t.quat, from_rotation_vector(turn)))
     charge = max(1.0 - told.sag * k, 0.0)
-    for i in range(4):
+    for i in range(told.count):
         kept.due[i] += told.lag * (kept.asked[i] - kept.due[i])
         gain = told.gain[i] * (1.0 + told.curve * (kept.asked[i] / told.hover - 1.0)) * charge
         kept.static[i] += told.lag * (kept.asked[i] * gain * faults.rotor[i] - kept.static[i])
     _move_through_air(R, t, told, kept, air)
     thrust, x, y, z = 0.0, 0.0, 0.0, 0.0
-    for i in range(4):
+    for i in range(told.count):
         thrust += told.mixer[0, i] * kept.lift[i]
         x += told.mixer[1, i] * kept.lift[i]
         y += told.mixer[2, i] * kept.lift[i]
@@ -106,13 +117,18 @@ def spin(k: int, told: Record, kept: Record, faults: Record, air: Record, t: Rec
         if i < 2:
             applied[i] -= told.drag * (t.v_cm[i] - air.velocity[i])
         applied[3 + i] = faults.torque[i] + R[i, 0] * x + R[i, 1] * y + R[i, 2] * z
+    if told.tilted:
+        for k in range(told.count):
+            for i in range(3):
+                sideways = R[i, 0] * told.lateral[0, k] + R[i, 1] * told.lateral[1, k]
+                applied[i] += sideways * kept.lift[k]
 
 
 @njit(cache=True)
 def _move_through_air(R: Array, t: Record, told: Record, kept: Record, air: Record) -> None:
     # What each rotor gives of its static thrust, by the velocity of its hub through the air and by what is below it.
     if not told.inflow:
-        for i in range(4):
+        for i in range(told.count):
             kept.lift[i] = kept.static[i] * air.lift
         return
     x, y, z = 0.0, 0.0, 0.0
@@ -120,7 +136,14 @@ def _move_through_air(R: Array, t: Record, told: Record, kept: Record, air: Reco
         v = t.v_cm[i] - air.velocity[i]
         x, y, z = x + R[i, 0] * v, y + R[i, 1] * v, z + R[i, 2] * v
     in_plane = np.sqrt(x * x + y * y)
-    for k in range(4):
+    for k in range(told.count):
         axial = z + t.omega[0] * told.mixer[1, k] + t.omega[1] * told.mixer[2, k]
+        if told.tilted:
+            hub = np.array([x, y, z]) + cross(t.omega.copy(), told.place[k].copy())
+            axial, square = 0.0, 0.0
+            for i in range(3):
+                axial += hub[i] * told.axis[k, i]
+                square += hub[i] * hub[i]
+            in_plane = np.sqrt(max(square - axial * axial, 0.0))
         f = factor_at_speed(kept.static[k], in_plane, axial, told.disc, told.slope, told.advance)
         kept.lift[k] = kept.static[k] * f * air.lift

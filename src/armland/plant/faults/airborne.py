@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from armland.records import Record
+from armland.records import MOST_ROTORS, Record
 from armland.scenario.faults import FAILURES
 
 LINK_LOSS, UPLINK_LOSS, DOWNLINK_LOSS = (FAILURES.index(f"{n}_loss") for n in ("link", "uplink", "downlink"))
@@ -46,7 +46,7 @@ def fail_uav(row: Record, since: float, kept: Record) -> None:
     elif kind in (THRUST_LOSS, POWER_LOSS):
         left = 1.0 - row.size if kind == THRUST_LOSS else 0.0
         kept.unpowered |= kind == POWER_LOSS
-        for i in range(4):
+        for i in range(MOST_ROTORS):
             kept.rotor[i] *= left
     elif kind == OVERLOAD:
         kept.force[2] = -row.size

@@ -20,7 +20,7 @@ from numba import njit
 
 from armland.plant.faults.airborne import fail_link, fail_uav
 from armland.plant.faults.ground import fail_arm, fail_camera, fail_magnet
-from armland.records import Record
+from armland.records import MOST_ROTORS, Record
 
 
 @njit(cache=True)
@@ -63,5 +63,5 @@ def _heal(kept: Record) -> None:
         kept.encoder_off[i] = kept.encoder_creep[i] = 0.0
     for i in range(3):
         kept.force[i] = kept.torque[i] = kept.wind[i] = kept.away[i] = seen.marker[i] = 0.0
-    for i in range(4):
+    for i in range(MOST_ROTORS):
         kept.rotor[i] = 1.0

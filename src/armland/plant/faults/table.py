@@ -5,10 +5,12 @@ A fault is armed when its phase first begins (or the run does) and acts from `af
 
 import numpy as np
 
+from armland.control.laws.realisation import elbow_of
 from armland.errors import ConfigurationError
+from armland.models.parameters import arm_model
 from armland.plant.devices.camera_numbers import ERRORS, well
 from armland.plant.scene.composition import Scene
-from armland.records import Records
+from armland.records import MOST_ROTORS, Records
 from armland.scenario import Scenario
 from armland.scenario.faults import DEVICES, FAILURES, Fault
 
@@ -63,7 +65,7 @@ def kept_layout(joints: int) -> np.dtype:
             ("drift", "f8"),  # N on the force sensor's z
             ("bridge", "f8"),  # what the force sensor makes of one N or N·m
             ("camera", ERRORS),
-            ("rotor", "f8", (4,)),  # share of its thrust that each rotor gives
+            ("rotor", "f8", (MOST_ROTORS,)),  # share of its thrust that each rotor gives
             ("coil", "f8"),  # share of its current that the magnet's coil lets through
             ("rating", "f8"),  # share of its rating that the magnet keeps
             ("residual", "f8"),  # share of that with which it pulls without current
@@ -84,9 +86,11 @@ def tell(told: Records, scenario: Scenario, scene: Scene, phases: tuple[str, ...
     """
     for fault in scenario.faults:
         _check(fault, scene, phases)
-    model = scene.model
-    elbow = int(model.dof_bodyid[scene.joint_dof[scene.joints // 2]])
-    bodies = {"uav": scene.uav_body, "tool": scene.tool_body, "elbow": elbow}
+    bodies = {"uav": scene.uav_body, "tool": scene.tool_body}
+    if any(f.body == "elbow" for f in scenario.faults):
+        # The link that the elbow's joint moves: the file says, or the arm's geometry.
+        elbow = elbow_of(scenario, arm_model(scenario))
+        bodies["elbow"] = int(scene.model.dof_bodyid[scene.joint_dof[elbow]])
     alone = {"elbow"} if "magnet" in scene.parts else {"elbow", "tool"}
     told["count"], told["rate_hz"] = len(scenario.faults), scenario.run.rate_hz
     for row, f in zip(told["row"][0], scenario.faults, strict=False):

@@ -5,6 +5,7 @@ import mujoco
 from armland.plant.scene.closing import RATE, closing
 from armland.plant.scene.eye import HOUSING
 from armland.plant.scene.uav import PLATE, UAV
+from armland.records import MOST_ROTORS
 
 OPEN_M, HINT_N = 1e-6, 1e-3
 """Gap at which a skid has left a rail, and the adhesion up to it: too small to hold anything. In the gap a contact has no friction,
@@ -15,7 +16,7 @@ def add_contacts(spec: mujoco.MjSpec, links: list[str]) -> None:
     """Let those of the free UAV's, the cradle's and the arm's shapes touch that are in `spec`; `links` are the arm's."""
     here = {g.name for g in spec.geoms}
     rails, skids = ["rail_1", "rail_2"], [f"{UAV}skid_1", f"{UAV}skid_2"]
-    frame, arm = [f"{UAV}frame_1", f"{UAV}frame_2"], [*links, "tool", HOUSING]
+    frame, arm = [f"{UAV}frame_{i + 1}" for i in range(MOST_ROTORS)], [*links, "tool", HOUSING]
     table = [
         (skids, [*rails, "floor", *arm], 0.8),
         (frame, [*rails, "floor", *arm], 0.4),

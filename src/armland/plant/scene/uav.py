@@ -1,13 +1,14 @@
 """The UAV in the scene: hinged on the arm for good, or free with skids, a hanging hinge plate and shapes that can touch.
 
-The UAV's file holds a body `uav` whose origin is its centre of mass, and sites `cm`, `pivot` and `rotor_1` to `rotor_4`.
+The UAV's file holds a body `uav` whose origin is its centre of mass, and sites `cm`, `pivot` and `rotor_1` to `rotor_8`.
 """
 
 import mujoco
 import numpy as np
 
+from armland.models.airframe.rotor_set import beams
 from armland.models.description import EE_SITE
-from armland.models.parameters import ROTOR_SITES, STEEL_KGM3, uav_file, uav_parameters
+from armland.models.parameters import STEEL_KGM3, rotor_set, uav_file, uav_parameters
 from armland.plant.scene.arm import add_capsule
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -31,7 +32,7 @@ STOP_R = 2000.0
 """rad/s² per N·m, see `set_stops`."""
 
 FRAME_RADIUS_M = 0.015
-"""Of the two beams that carry the rotors, as far as they can touch."""
+"""Of the beams that carry the rotors, as far as they can touch."""
 
 
 def uav_spec(scenario: Scenario) -> mujoco.MjSpec:
@@ -74,9 +75,9 @@ def let_fly(spec: mujoco.MjSpec, uav: mujoco.MjSpec, scenario: Scenario) -> mujo
     """Put the UAV into the scene as a free body with frame shapes, skids and hinge plate; returns its body."""
     body = uav.body("uav")
     body.add_freejoint(name="free")
-    rotors = [site(uav, name).pos for name in ROTOR_SITES]
-    for i in range(2):
-        add_capsule(body, f"frame_{i + 1}", [*rotors[i], *rotors[i + 2]], FRAME_RADIUS_M)
+    cm = site(uav, "cm").pos
+    for i, (one, other) in enumerate(beams(rotor_set(scenario).place)):
+        add_capsule(body, f"frame_{i + 1}", [*(cm + one), *(cm + other)], FRAME_RADIUS_M)
     _add_skids(body, scenario.skids)
     _hang_plate(body, site(uav, "pivot").pos.copy(), scenario.plate, scenario.hinge, uav.compiler.degree)
     return body

@@ -26,7 +26,7 @@ class UavDeviation(Device):
         (-0.6, 1.0),
         "share, all rotors; (AR.Drone 2.0 motor bench: 1.77 to 1.98 N at full power about 1.86 N)",
     )
-    rotor: Own = deviates((-0.04, 0.04), (-0.6, 1.0), "share, each rotor (the same bench: 0.05 N at half power)", "4")
+    rotor: Own = deviates((-0.04, 0.04), (-0.6, 1.0), "share, each rotor (the same bench: 0.05 N at half power)", "8")
     curve: Own = deviates(
         (-0.1, 0.1),
         (-0.8, 0.8),

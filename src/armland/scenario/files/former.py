@@ -73,6 +73,16 @@ def renamed(data: dict[str, Any]) -> list[str]:
     return problems
 
 
+def without_effect(data: dict[str, Any]) -> frozenset[str]:
+    """Dotted paths, as they are today, of keys in the tables `data` of a file that a landing's file of before version 0.2 had to have.
+
+    Every landing had a thrust on the hinge within what its rotors give, though only the paper's experiments use it.
+    """
+    control = data.get(DEMONSTRATOR)
+    control = control.get("control") if isinstance(control, dict) else None
+    return frozenset({"control.thrust_n"} if isinstance(control, dict) and "thrust_n" in control else ())
+
+
 def rebased(data: dict[str, Any]) -> None:
     """Base a file on the landing that comes with armland where it names no base and needs one.
 

@@ -1,7 +1,5 @@
 """Strict scenario loading: TOML, a base, calibrated values from their own file, all errors at once with their path."""
 
-import re
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from copy import deepcopy
@@ -12,8 +10,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from armland.errors import ConfigurationError
+from armland.scenario.files.airframe import find_airframe, read_airframe
 from armland.scenario.files.calibration import merge_calibration
-from armland.scenario.files.former import rebased, renamed
+from armland.scenario.files.former import rebased, renamed, without_effect
+from armland.scenario.files.toml import read_toml, text_of
 from armland.scenario.refusal import problems, refused
 from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.tree import Scenario
@@ -21,14 +21,8 @@ from armland.scenario.tree import Scenario
 SCENARIOS = Path(str(files("armland") / "scenarios"))
 """Folder of the scenarios that come with armland."""
 
-LARGEST = 1_000_000
-"""Bytes of a scenario file; a larger one is not one."""
-
 MOST_BASES = 8
 """Bases on bases."""
-
-DEEP = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""")
-"""A dotted key of more parts than any scenario has tables: the parser's memory grows with the square of them."""
 
 
 def load_scenario(path: str | Path = "landing", overrides: dict[str, Any] | None = None) -> Scenario:
@@ -45,8 +39,8 @@ def load_scenario(path: str | Path = "landing", overrides: dict[str, Any] | None
     head = f"{path.name} as overridden" if overrides else path.name
     extra = deepcopy(orderly(overrides or {}, "what overrides the scenario"))
     found = renamed(extra)
-    own = _tables(path, found)
-    own |= {key: extra.pop(key) for key in ("base", "calibration") if key in extra}
+    idle, own = without_effect(read_toml(path)), _tables(path, found)
+    own |= {key: extra.pop(key) for key in ("base", "calibration", "airframe") if key in extra}
     asked = set(leaves(extra))
     data = _based(own, path, found, asked)
     update(own, extra)
@@ -58,9 +52,12 @@ def load_scenario(path: str | Path = "landing", overrides: dict[str, Any] | None
         found += problems(e, Scenario)
     if found:
         raise refused(head, found)
-    scenario._text = _text(path)
+    scenario._text = text_of(path)
     scenario._overrides = as_json(overrides) if overrides else ""
-    scenario._own = frozenset(leaves({k: v for k, v in own.items() if k not in ("base", "calibration", "title")}))
+    scenario._own = (
+        frozenset(leaves({k: v for k, v in own.items() if k not in ("base", "calibration", "title", "airframe")}))
+        - idle
+    )
     scenario._asked = frozenset(asked)
     return scenario
 
@@ -80,25 +77,6 @@ def find(path: str | Path) -> Path:
     )
 
 
-def read_toml(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file.
-
-    Raises:
-        ConfigurationError: it cannot be read, is too large, or is not TOML.
-    """
-    too_deep = ConfigurationError(f"{path.name}: tables or lists are nested too deeply; a scenario needs six levels")
-    try:
-        text = _text(path)
-        if DEEP.search(text):
-            raise too_deep
-        return orderly(tomllib.loads(text), path.name)
-    except RecursionError as e:
-        raise too_deep from e
-    except ValueError as e:
-        # Besides errors of TOML and of UTF-8, an integer of thousands of digits.
-        raise ConfigurationError(f"{path.name} is not valid TOML: {e}") from e
-
-
 def _based(data: dict[str, Any], path: Path, found: list[str], asked: set[str], depth: int = 0) -> dict[str, Any]:
     # The tables of a file on those of its base, calibrated values and absolute paths included. What a user's file sets is asked for.
     data = deepcopy(data)
@@ -110,8 +88,9 @@ def _based(data: dict[str, Any], path: Path, found: list[str], asked: set[str], 
         with _named(path, "calibration"):
             found += merge_calibration(data, read_toml(file), file)
     _resolve_files(data, path.parent)
+    frame = data.get("airframe")
     if base is None:
-        return data
+        return _framed({}, frame, data, path, asked)
     if not isinstance(base, str):
         raise ConfigurationError(f"{path.name}: base = {base!r:.60} should be the name of a scenario or of a file")
     if depth >= MOST_BASES:
@@ -122,8 +101,26 @@ def _based(data: dict[str, Any], path: Path, found: list[str], asked: set[str], 
     with _named(path, "base"):
         tables = _tables(file, found)
     out = _based(tables, file, found, asked, depth + 1)
-    update(out, data)
-    return out
+    return _framed(out, frame, data, path, asked)
+
+
+def _framed(below: dict[str, Any], frame: Any, data: dict[str, Any], path: Path, asked: set[str]) -> dict[str, Any]:
+    # `data` on `below`, and the UAV that it names between them; what comes with armland, and names none by itself, lies below the UAV.
+    own = path.parent.resolve() == SCENARIOS.resolve()
+    if frame is not None:
+        if not isinstance(frame, str):
+            raise ConfigurationError(f"{path.name}: airframe = {frame!r:.60} should be the name of a UAV or of a file")
+        file = find_airframe(frame, None if own else path.parent)
+        with _named(path, "airframe"):
+            tables = read_airframe(file)
+        asked |= set(leaves(tables))
+        data = {**data, "airframe": str(file)}
+        layers: tuple[dict[str, Any], ...] = (data, tables) if own else (tables, data)
+    else:
+        layers = (data,)
+    for layer in layers:
+        update(below, layer)
+    return below
 
 
 def _tables(path: Path, found: list[str]) -> dict[str, Any]:
@@ -150,16 +147,6 @@ def _named(path: Path, what: str) -> Iterator[None]:
         yield
     except ConfigurationError as e:
         raise ConfigurationError(f"{path.name}: {what}: {e}") from e
-
-
-def _text(path: Path) -> str:
-    try:
-        size = path.stat().st_size
-        if size > LARGEST:
-            raise ConfigurationError(f"{path.name} has {size} bytes; a scenario has at most {LARGEST}")
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as e:
-        raise ConfigurationError(f"{path.name} cannot be read: {e.strerror}") from e
 
 
 def _is_file(path: Path) -> bool:

@@ -1,0 +1,90 @@
+"""How hard a landing touches down by closed forms: how slowly the arm feels for the cradle, so that the magnet holds the plate.
+
+| symbol | name | unit |
+|---|---|---|
+| Λ (3, 3) | apparent mass of the end effector that does not turn, at the put-down | kg, D |
+| k, c | stiffness and damping of all four buffers | N/m, N·s/m |
+| v | `control.approach.lower_mps` | m/s |
+| F, S | pull at the hinge, and shear, at the touchdown's peak | N |
+
+The arm is what is stopped, its mass on the buffers' springs: F = v √(k Λ_zz) exp(−ζ arccos ζ/√(1 − ζ²)), ζ = c/(2 √(k Λ_zz)),
+the first peak of a damped oscillator. The skids' friction holds the pivot where it is, so what slows it down pushes it aside, too:
+S = F |(Λ_xz, Λ_yz)|/Λ_zz.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from armland.errors import ConfigurationError
+from armland.models.arm import ArmModel
+from armland.models.posture import lead
+from armland.rotations import Array
+from armland.scenario import Scenario
+
+BUFFERS = 4
+
+LOWER_MPS = 0.03
+"""Speed at which a well-held plate is lowered: slow enough for the force to be felt before it is large."""
+
+SHARE = 0.8
+"""Of the speed that the magnet just bears, what is taken by rule: a plant that differs touches down a quarter harder."""
+
+
+class Blow(NamedTuple):
+    """Peaks of a touchdown over its speed, N·s/m."""
+
+    pull: float
+    shear: float
+
+    def speed(self, rating: float, share: float, shear_share: float) -> float:
+        """Largest speed, m/s, at which a magnet of `rating` N holds with `share` of what it can; it holds `shear_share` sideways."""
+        return rating / max(self.pull / share, self.shear / (share * shear_share) + self.pull)
+
+
+def touchdown(scenario: Scenario, apparent: Array) -> Blow:
+    """The peaks of a touchdown over its speed.
+
+    Args:
+        scenario: believed.
+        apparent: Λ (3, 3), kg, D.
+    """
+    cradle, mass = scenario.cradle, float(apparent[2, 2])
+    undamped = np.sqrt(BUFFERS * cradle.stiffness_npm * mass)
+    # From the critical damping on the first peak is that of the damper, at once.
+    ratio = min(BUFFERS * cradle.damping_nspm / (2.0 * undamped), 0.999)
+    pull = undamped * np.exp(-ratio * np.arccos(ratio) / np.sqrt(1.0 - ratio**2))
+    return Blow(float(pull), float(pull * np.hypot(apparent[0, 2], apparent[1, 2]) / mass))
+
+
+def apparent_mass(arm: ArmModel) -> Array:
+    """Λ (3, 3), kg, D, in the arm's present pose: what a force finds that may not turn the end effector."""
+    mobility = arm.jacobian @ np.linalg.solve(arm.mass_matrix, arm.jacobian.T)
+    return np.asarray(np.linalg.inv(mobility)[:3, :3])
+
+
+def gently(scenario: Scenario, arm: ArmModel, home: Array) -> Scenario:
+    """The scenario with a speed of lowering at which the magnet holds the plate through the touchdown.
+
+    Args:
+        scenario: believed.
+        arm: believed; its state is overwritten.
+        home: joint positions (n,), rad, from which the put-down is reached.
+
+    Raises:
+        ConfigurationError: the speed that was set is too high, with the peaks, and with the rating and the speed that would do.
+    """
+    magnet, share, asked = scenario.magnet, scenario.limits.hinge_force_share, scenario.control.approach.lower_mps
+    arm.update(lead(arm, home, np.array(scenario.place.put_down_m)), np.zeros(arm.joints))
+    blow = touchdown(scenario, apparent_mass(arm))
+    most = blow.speed(magnet.rating_n, share, magnet.shear_share)
+    if asked is None:
+        return scenario.replaced({"control": {"approach": {"lower_mps": min(LOWER_MPS, SHARE * most)}}})
+    if asked > most:
+        raise ConfigurationError(
+            f"control.approach.lower_mps = {asked:g}: at the touchdown the arm, stopped by the cradle, would pull at the magnet with "
+            f"{asked * blow.pull:.1f} N and shear with {asked * blow.shear:.1f} N; with magnet.rating_n = {magnet.rating_n:g}, "
+            f"limits.hinge_force_share = {share:g} and magnet.shear_share = {magnet.shear_share:g} it may be at most {most:.3f} m/s, "
+            f"or the rating at least {magnet.rating_n * asked / most:.0f} N"
+        )
+    return scenario

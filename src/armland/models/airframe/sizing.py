@@ -1,0 +1,248 @@
+"""What follows from a UAV's size where the user sets nothing: rules from the AR.Drone 2.0 on the LWR, which was tried, to any other.
+
+| symbol | name | AR.Drone |
+|---|---|---|
+| m | mass without plate and extra load | 0.48 kg |
+| J_i | inertia about each body axis | 0.006, 0.007, 0.012 kg·m² |
+| J_p | larger inertia about the pivot, J + m ρ² | 0.0087 kg·m² |
+| r | mean distance of the rotors from the middle axis | 0.180 m |
+| τ | rotor lag | 0.05 s |
+| n | number of rotors | 4 |
+| R | radius of a rotor | 0.1 m |
+| ω | bandwidth of the attitude loop on board: the AR.Drone's times (τ₀/τ), and no faster than its sampling bears | |
+
+A rule is a ratio to the AR.Drone by which a value of the scenario is multiplied. So the AR.Drone keeps its values
+bit for bit, and a UAV that is
+the AR.Drone twice as heavy, with twice the inertia and twice the thrust, on a cradle with buffers twice as stiff, moves as the AR.Drone
+does and makes twice its forces: what was tried for one is tried for all that differ by mass alone. Forces that only the arm's side
+makes (drift of the force-torque sensor, errors of the arm's model) do not grow with the UAV. They bound from below
+how light a UAV may be.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from armland.models.parameters import rotor_set, uav_parameters
+from armland.scenario import Scenario
+from armland.scenario.tables import update
+
+MASS_KG, LAG_S, RADIUS_M, RATE_HZ, RATING_N = 0.48, 0.05, 0.1, 200, 177.0
+INERTIA = np.array([0.006, 0.007, 0.012])
+LEVER_M, REACH_M = np.array([0.0, 0.0, -0.06]), float(np.hypot(0.127, 0.127))
+
+BUILT = ("uav", "rotors", "link", "hinge", "plate", "magnet", "cradle")
+"""Sections of what is built, which follow from what the UAV is; all others follow from what is believed of it."""
+
+FELT = 0.25
+"""Least ratio of what has to be felt beside the arm's own motion: 0.3 N of contact, 0.2 N of pull."""
+
+FASTEST = 2.0
+"""Largest bandwidth over rate of samples, in terms of the AR.Drone's: eleven samples within 1/ω are left, where it has eleven at 1."""
+
+
+class Size(NamedTuple):
+    """Ratios of a UAV to the AR.Drone; exactly 1 where nothing differs."""
+
+    mass: float
+    inertia: tuple[float, float, float]
+    about_pivot: float
+    """J_p."""
+    reach: float
+    """r."""
+    number: float
+    """n."""
+    bandwidth: float
+    """ω."""
+    lag: float
+    """τ."""
+    radius: float
+    """R."""
+    rating: float
+    """Of the magnet."""
+    lever: float
+    """ρ, vertical."""
+    lower: float
+    """How much lower the pivot is, m: a difference and no ratio."""
+
+
+class Rule(NamedTuple):
+    """What is multiplied by what, and why."""
+
+    key: str
+    factor: Callable[[Size], Any]
+    because: str
+
+
+def _weight(s: Size) -> float:
+    return s.mass
+
+
+def _felt(s: Size) -> float:
+    return max(s.mass, FELT)
+
+
+def _stiffness(s: Size) -> tuple[float, ...]:
+    return tuple(j * s.bandwidth**2 for j in s.inertia)
+
+
+def _damping(s: Size) -> tuple[float, ...]:
+    return tuple(j * s.bandwidth for j in s.inertia)
+
+
+WEIGHT = "grows with the weight"
+
+RULES = (
+    Rule("uav.drag_nspm", _weight, "quadrotors of all sizes lose 0.4 to 0.5 of their speed a second"),
+    Rule("rotors.radius_m", lambda s: s.reach, "rotors grow with the distance between them"),
+    Rule("rotors.drag_torque_m", lambda s: s.radius, "torque over thrust grows with the rotor's radius"),
+    Rule("rotors.max_thrust_n", lambda s: s.mass / s.number, "the same thrust over weight"),
+    Rule("rotors.min_thrust_n", lambda s: s.mass / s.number, "the same thrust over weight"),
+    Rule("onboard.kp_nm", _stiffness, "inertia times the square of the bandwidth"),
+    Rule("onboard.kd_nms", _damping, "inertia times the bandwidth"),
+    Rule("onboard.lead_s", lambda s: s.lag, "makes up for the rotors' lag"),
+    Rule("onboard.watched_n", lambda s: s.mass / s.number, WEIGHT),
+    Rule("onboard.run_down_nps", _weight, WEIGHT),
+    Rule("onboard.hover.lift_min_n", _weight, WEIGHT),
+    Rule("onboard.hover.thrust_max_n", _weight, WEIGHT),
+    Rule("link.torque_limit_nm", lambda s: s.mass * s.reach, "grows with what the rotors have left about hover"),
+    Rule("control.thrust_n", _weight, "half the weight"),
+    Rule("control.takeover_limit_n", _weight, WEIGHT),
+    Rule("control.thrust.rate_nps", _weight, "the ramp takes as long"),
+    Rule("control.thrust.slack_n", _weight, WEIGHT),
+    Rule("control.thrust.floor_n", _weight, WEIGHT),
+    Rule("control.approach.give_way_mpns", lambda s: 1.0 / s.mass, "gives way to a share of the weight"),
+    Rule(
+        "control.approach.give_way_max_m",
+        lambda s: max(s.lever, 1.0),
+        "a force at the hinge tilts a UAV by its lever, and its skids meet the rails one after the other",
+    ),
+    Rule("estimation.load_observer_limit_n", _weight, WEIGHT),
+    Rule("estimation.contact.contact_n.on", _felt, WEIGHT),
+    Rule("estimation.contact.contact_n.off", _felt, WEIGHT),
+    Rule("estimation.contact.release_n.on", _weight, WEIGHT),
+    Rule("estimation.contact.release_n.off", _weight, WEIGHT),
+    Rule("bounds.pull_test_n", _felt, WEIGHT),
+    Rule("bounds.pull_seen_n", _felt, WEIGHT),
+    Rule("bounds.force_free_n", _weight, WEIGHT),
+    Rule("bounds.force_balanced_n", _weight, WEIGHT),
+    Rule("bounds.force_light_n", _weight, WEIGHT),
+    Rule("bounds.force_launched_n", _weight, WEIGHT),
+    Rule("bounds.rotors_off_n", _weight, WEIGHT),
+    Rule("bounds.thrust_left_n", _weight, WEIGHT),
+    Rule("limits.carried_n", _weight, WEIGHT),
+    Rule("limits.impact_n", _weight, WEIGHT),
+    Rule("limits.unexplained_n", _weight, WEIGHT),
+    Rule("limits.load_gone_n", _weight, WEIGHT),
+    Rule("limits.shortfall_n", _weight, WEIGHT),
+    Rule("limits.stuck_n", _weight, WEIGHT),
+    Rule("hinge.stop_nm", lambda s: s.about_pivot, "meets the UAV's inertia about the pivot"),
+    Rule("hinge.stop_nms", lambda s: s.about_pivot, "meets the UAV's inertia about the pivot"),
+    Rule("hinge.friction_nm", _weight, "dry friction grows with the load"),
+    Rule("hinge.damping_nms", _weight, WEIGHT),
+    Rule(
+        "magnet.rating_n",
+        lambda s: s.mass**0.5,
+        "34 times the AR.Drone's weight is more than it needs: 7 times is left at 10 kg, 5 at 25 kg, for peaks of 1.5 times",
+    ),
+    Rule("plate.thickness_m", lambda s: s.rating**0.5, "the flux of a stronger magnet needs a thicker plate"),
+    Rule("magnet.residual_n", lambda s: s.rating, "a share of the rating"),
+    Rule("cradle.stiffness_npm", _weight, "sinks as far"),
+    Rule("cradle.damping_nspm", _weight, "sinks as far"),
+    Rule("cradle.mass_kg", _weight, "stiff enough for what it bears"),
+)
+"""In the order in which they are applied: later ones may follow from earlier ones."""
+
+
+def size_of(scenario: Scenario) -> Size:
+    """Ratios of a scenario's UAV to the AR.Drone.
+
+    Raises:
+        ModelError: the UAV's file cannot be used.
+    """
+    body, rotors = uav_parameters(scenario), rotor_set(scenario)
+    mass = body.mass - scenario.uav.extra_mass_kg if scenario.uav.extra_mass_kg else body.mass
+    inertia = np.diag(body.inertia)
+    ratios = [_near(j) for j in inertia / INERTIA]
+    reach = float(np.hypot(rotors.place[:, 0], rotors.place[:, 1]).mean())
+    lag = scenario.rotors.time_constant_s / LAG_S
+    swung = _swung(inertia, mass, body.lever) / _swung(INERTIA, MASS_KG, LEVER_M)
+    return Size(
+        mass=_near(mass / MASS_KG),
+        inertia=(ratios[0], ratios[1], ratios[2]),
+        about_pivot=_near(swung),
+        reach=_near(reach / REACH_M),
+        number=rotors.number / 4,
+        bandwidth=min(_near(1.0 / lag), FASTEST * scenario.onboard.rate_hz / RATE_HZ),
+        lag=_near(lag),
+        radius=_near(scenario.rotors.radius_m / RADIUS_M),
+        rating=_near(scenario.magnet.rating_n / RATING_N),
+        lever=_near(body.lever[2] / LEVER_M[2]),
+        lower=float(LEVER_M[2] - body.lever[2]),
+    )
+
+
+def sized(scenario: Scenario) -> Scenario:
+    """The scenario with every value that the user has not set as the rules make it of the UAV's size; itself where it has been done.
+
+    Raises:
+        ModelError: the UAV's file cannot be used.
+        ConfigurationError: what the rules make contradicts what the user has set.
+    """
+    if scenario.sized:
+        return scenario
+    for group in (("rotors.radius_m", "magnet.rating_n"), tuple(rule.key for rule in RULES)):
+        done = {rule.key for rule in RULES} - set(group) if len(group) == 2 else {"rotors.radius_m", "magnet.rating_n"}
+        scenario = scenario.resolved(_changes(scenario, [r for r in RULES if r.key not in done]))
+    return scenario
+
+
+def _changes(scenario: Scenario, rules: list[Rule]) -> dict[str, Any]:
+    real, believed, out = size_of(scenario), size_of(scenario.believed()), dict[str, Any]()
+    for rule in rules:
+        factor = rule.factor(real if rule.key.partition(".")[0] in BUILT else believed)
+        if is_settled(scenario, rule.key) or np.all(np.equal(factor, 1.0)):
+            continue
+        value = at(scenario, rule.key)
+        made = (
+            [v * f for v, f in zip(value, factor, strict=True)] if isinstance(factor, tuple) else _times(value, factor)
+        )
+        update(out, nested(rule.key, made))
+    if abs(real.lower) > 1e-6 and not is_settled(scenario, "skids.z_m"):
+        # The UAV stands on its skids with the plate as far above the ground as the AR.Drone's.
+        update(out, {"skids": {"z_m": scenario.skids.z_m - real.lower}})
+    return out
+
+
+def is_settled(scenario: Scenario, key: str) -> bool:
+    """Whether the user has set the value at the dotted `key`, or a table around it."""
+    return any(key == s or key.startswith(f"{s}.") or s.startswith(f"{key}.") for s in scenario.settled)
+
+
+def at(scenario: Scenario, key: str) -> Any:
+    """The value at the dotted `key`."""
+    value: Any = scenario
+    for name in key.split("."):
+        value = getattr(value, name)
+    return value
+
+
+def nested(key: str, value: Any) -> dict[str, Any]:
+    """`value` at the dotted `key`, as tables."""
+    for name in reversed(key.split(".")):
+        value = {name: value}
+    return dict(value)
+
+
+def _times(value: Any, factor: float) -> Any:
+    return [v * factor for v in value] if isinstance(value, tuple) else value * factor
+
+
+def _near(ratio: float) -> float:
+    # What differs by rounding alone is the AR.Drone's.
+    return 1.0 if abs(ratio - 1.0) < 1e-9 else float(ratio)
+
+
+def _swung(inertia: np.ndarray, mass: float, lever: np.ndarray) -> float:
+    return float(max(inertia[0], inertia[1]) + mass * lever[2] ** 2)

@@ -1,0 +1,71 @@
+"""Moves that are too fast for an arm's joints take longer, and no others; what would take far longer is refused."""
+
+import numpy as np
+import pytest
+
+from armland.errors import WorkspaceError
+from armland.mission.feasibility.pace import SHARE, joint_speeds, paced
+from armland.mission.missions.landing import LANDING, PHASES
+from armland.mission.reference.septic import septic
+from armland.models.parameters import arm_model
+from armland.models.posture import lead, pose
+from armland.scenario import load_scenario
+
+SLOW = 0.7
+"""rad/s, of each joint; the LWR's own turn at 1.9 rad/s and more."""
+
+
+def slow(speed=SLOW):
+    scenario = load_scenario("landing", {"arm": {"joint_speed_rad_s": [speed] * 7}}).believed()
+    return scenario, arm_model(scenario)
+
+
+def durations(phases):
+    return {p.name: p.duration_s for p in phases}
+
+
+def fastest(arm, scenario, q, duration):
+    """Largest joint speed of the move from below the catch to the standoff, by differences of poses at 100 Hz."""
+    catch, place = np.array(scenario.place.catch_m), scenario.place
+    q, qs = lead(arm, q, catch - [0.0, 0.0, place.wait_below_m]), []
+    for t in np.arange(0.0, duration, 0.01):
+        s, _, _ = septic(t / duration, duration)
+        z = -place.wait_below_m + s * (place.wait_below_m - place.standoff_m)
+        q = pose(arm, q, catch + [0.0, 0.0, z])
+        qs.append(q)
+    return np.abs(np.diff(qs, axis=0)).max() / 0.01
+
+
+def test_arm_that_is_fast_enough_keeps_the_missions_times(landing_plan):
+    assert landing_plan.phases == PHASES
+
+
+def test_slow_arm_moves_as_slowly_as_its_joints_need(landing_plan):
+    scenario, arm = slow()
+    made, own = durations(paced(PHASES, LANDING, arm, landing_plan.home, scenario)), durations(PHASES)
+    allowed = SHARE * scenario.limits.joint_speed_share * SLOW
+    assert fastest(arm, scenario, landing_plan.home, own["approach"]) > allowed
+    assert fastest(arm, scenario, landing_plan.home, made["approach"]) == pytest.approx(allowed, rel=0.1)
+    assert made["carry"] == own["carry"]
+
+
+def test_phase_that_takes_longer_times_out_later(landing_plan):
+    scenario, arm = slow()
+    made = paced(PHASES, LANDING, arm, landing_plan.home, scenario)
+    left = [p.timeout_s - p.duration_s for p in made]
+    np.testing.assert_allclose(left, [p.timeout_s - p.duration_s for p in PHASES])
+
+
+def test_arm_that_is_far_too_slow_is_refused(landing_plan):
+    scenario, arm = slow(0.05)
+    with pytest.raises(
+        WorkspaceError, match=r"in the phase approach joint \w+ would have to turn at \d+\.\d times the 0\.05 rad/s"
+    ):
+        paced(PHASES, LANDING, arm, landing_plan.home, scenario)
+
+
+def test_joint_speeds_give_the_velocity_and_hold_the_attitude(landing_plan):
+    arm = landing_plan.arm
+    arm.update(landing_plan.home, np.zeros(arm.joints))
+    velocity = np.array([0.1, -0.2, 0.3])
+    np.testing.assert_allclose(arm.jacobian @ joint_speeds(arm, velocity), [*velocity, 0.0, 0.0, 0.0], atol=1e-6)

@@ -1,0 +1,71 @@
+"""Values by rule from a UAV's size: the AR.Drone keeps its own, the user's always win, physics scales as it should."""
+
+import numpy as np
+import pytest
+
+from armland.models.airframe.sizing import RULES, at, size_of, sized
+from armland.scenario import load_scenario
+
+
+def other(factor, **more):
+    """The AR.Drone times `factor` in mass and inertia."""
+    inertia = (factor * np.diag([0.006, 0.007, 0.012])).tolist()
+    return load_scenario("landing", {"uav": {"mass_kg": factor * 0.48, "inertia_kgm2": inertia}, **more})
+
+
+@pytest.mark.parametrize("name", ["landing", "paper", "compare"])
+def test_the_ar_drone_keeps_its_values(name):
+    scenario = load_scenario(name)
+    assert sized(scenario).model_dump() == scenario.model_dump()
+    assert sized(scenario).sized
+
+
+def test_a_load_and_a_wrong_belief_make_no_other_uav_of_what_is_built():
+    loaded = load_scenario("landing", {"uav": {"extra_mass_kg": 0.1}})
+    assert sized(loaded).model_dump() == loaded.model_dump()
+    wrong = sized(load_scenario("landing", {"belief": {"uav": {"mass_kg": 0.576}}}))
+    assert wrong.rotors == loaded.rotors
+    assert wrong.limits.unexplained_n == pytest.approx(1.2 * 2.5)
+
+
+def test_attitude_loops_have_the_same_poles():
+    """k_p/J and k_d/J are the square of a frequency and a damping: of all UAVs of one rotor lag."""
+    big, small = sized(other(7.0)), load_scenario("landing")
+    for name in ("kp_nm", "kd_nms"):
+        np.testing.assert_allclose(getattr(big.onboard, name), 7.0 * np.array(getattr(small.onboard, name)), rtol=1e-12)
+    slow = sized(other(1.0, rotors={"time_constant_s": 0.1}))
+    np.testing.assert_allclose(slow.onboard.kp_nm, 0.25 * np.array(small.onboard.kp_nm))
+    assert slow.onboard.lead_s == pytest.approx(0.1)
+    # No faster than the samples bear, however quick the rotors are.
+    quick = sized(other(1.0, rotors={"time_constant_s": 0.005}))
+    np.testing.assert_allclose(quick.onboard.kp_nm, 4.0 * np.array(small.onboard.kp_nm))
+
+
+def test_forces_over_weight_and_times_are_kept():
+    big = sized(other(5.0))
+    for key in ("limits.unexplained_n", "bounds.pull_test_n", "control.thrust.rate_nps", "onboard.hover.lift_min_n"):
+        assert at(big, key) == pytest.approx(5.0 * at(load_scenario("landing"), key))
+    # Frequency and damping of what comes down on the buffers: k/m and c/m.
+    assert big.cradle.stiffness_npm / 5.0 == pytest.approx(1e4)
+    assert big.cradle.mass_kg == pytest.approx(1.5)
+
+
+def test_what_the_user_sets_is_kept():
+    kept = sized(other(5.0, limits={"unexplained_n": 3.0}, onboard={"kp_nm": [9.0, 9.0, 5.0]}))
+    assert kept.limits.unexplained_n == 3.0
+    assert kept.onboard.kp_nm == (9.0, 9.0, 5.0)
+    assert kept.limits.load_gone_n == pytest.approx(10.0)
+    changed = sized(load_scenario("landing").replaced({"uav": {"mass_kg": 2.4}, "bounds": {"pull_test_n": 2.5}}))
+    assert changed.bounds.pull_test_n == 2.5
+
+
+def test_once_is_enough():
+    once = sized(other(5.0))
+    assert sized(once.with_seed(7)).limits == once.limits
+
+
+def test_rules_name_keys_that_there_are():
+    scenario, size = load_scenario("landing"), size_of(load_scenario("landing"))
+    for rule in RULES:
+        at(scenario, rule.key)
+        assert np.all(np.equal(rule.factor(size), 1.0)), rule.key
