@@ -192,8 +192,11 @@ CELLS: dict[tuple[str, str, str], Cell] = {
     ("takeoff", "thrust_lost", "grip"): Cell(end="holding"),
     ("takeoff", "thrust_lost", "touch"): Cell(end="holding", found="thrust_short"),
     ("takeoff", "thrust_lost", "flight"): Cell(end="holding", found="thrust_short"),
-    # A landing lets no UAV go that it has carried, but by a slip; what is left of its thrust is learnt on the magnet.
-    ("landing", "thrust_short", "touch"): COPES,
+    # What is left of its thrust is learnt on the magnet: in a hover it would need nearly all of it, and is not let go.
+    ("landing", "thrust_short", "touch"): Cell(found="thrust_lost"),
+    ("takeoff", "thrust_short", "ground"): Cell(end="holding", found="thrust_lost"),
+    ("takeoff", "thrust_short", "held"): Cell(end="holding", found="thrust_lost"),
+    ("takeoff", "thrust_short", "grip"): Cell(end="holding", found="thrust_lost"),
 }
 
 _FALLS = "a flying UAV of this weight that loses a rotor falls, docs/laws/balance.md; the arm can only make room"
@@ -244,7 +247,10 @@ OTHERWISE: dict[tuple[str, str, str], str] = {
     ("takeoff", "thrust_lost", "grip"): "it shows when the rotors are to carry the whole weight, in the air",
     ("takeoff", "thrust_lost", "touch"): "it lies on the arm that draws back",
     ("takeoff", "thrust_lost", "flight"): "it lies on the arm that draws back",
-    ("landing", "thrust_short", "touch"): "nothing is let go in the air: what is left is learnt on the magnet",
+    ("landing", "thrust_short", "touch"): "what is left is learnt on the magnet, before it is let go",
+    ("takeoff", "thrust_short", "ground"): "what is left is felt on the magnet, before it is let go",
+    ("takeoff", "thrust_short", "held"): "what is left is felt on the magnet, before it is let go",
+    ("takeoff", "thrust_short", "grip"): "what is left is felt on the magnet, before it is let go",
 }
 """Cells whose trial does not end as the table says or is not found by the fault's own sign, and why."""
 
