@@ -149,7 +149,7 @@ def markdown(records: Iterable[Record]) -> str:
             "",
             "The first name that was found; none: the procedure itself gave up, or a figure was out of its bound.",
             "",
-            confusion((r["what"], named(r)[0]) for r in ended),
+            confusion((_words(r["what"]), named(r)[0]) for r in ended),
             "",
             "## Not true",
             "",
@@ -165,6 +165,11 @@ def markdown(records: Iterable[Record]) -> str:
             "",
         ]
     )
+
+
+def _words(what: str) -> str:
+    kind, _, phase = what.partition(".")
+    return f"{kind} in {phase}" if kind in ("gust", "push") else f"deviation.{what}"
 
 
 def _lines(records: list[Record], words: Any) -> list[str]:

@@ -100,10 +100,11 @@ def confusion(flown: Iterable[tuple[str, str]]) -> str:
     """A table of what failed or differed, and how often each name was found, as Markdown.
 
     Args:
-        flown: what it was, and the name that was found.
+        flown: what it was, in words or as a name, and the name that was found.
     """
     counts = Counter(flown)
     rows, names = sorted({r for r, _ in counts}), sorted({n for _, n in counts}, key=lambda n: (n == NONE, n))
     lines = [f"| | {' | '.join(f'`{n}`' if n != NONE else 'none' for n in names)} |", "|---" * (len(names) + 1) + "|"]
-    lines += [f"| `{r}` | {' | '.join(str(counts[r, n] or '') for n in names)} |" for r in rows]
+    # What is more than one word is no name.
+    lines += [f"| {r if ' ' in r else f'`{r}`'} | {' | '.join(str(counts[r, n] or '') for n in names)} |" for r in rows]
     return "\n".join(lines)

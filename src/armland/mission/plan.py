@@ -154,12 +154,12 @@ def _flight_plan(scenario: Scenario, mission: Mission, law: str | None, trial: b
     check_weight(scenario, flies, takes_off and flies_on(scenario), trial)
     if not takes_off:
         check_capture(scenario, flies.mass)
-        check_by_hand(scenario, flies)
     phases = mission.phases(scenario)
     # Contradictions are told before the arm is asked where it can go.
     _table(mission, phases, scenario, flies)
     home = survey(arm, scenario, mission, flies.weight)
     if not takes_off:
+        check_by_hand(scenario, flies)
         scenario = gently(scenario, arm, home)
     phases = paced(phases, mission, arm, home, scenario)
     launch: Launch | None = None

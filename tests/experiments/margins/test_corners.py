@@ -27,7 +27,7 @@ def test_one_sign_is_at_its_largest_with_every_seed(landing_scenario):
 
 
 @pytest.mark.parametrize(
-    ("path", "size", "end"), [("uav.rotor", 4, 0.04), ("wrench.cross", 12, 0.01), ("arm.torque", 7, 0.005)]
+    ("path", "size", "end"), [("uav.rotor", 8, 0.04), ("wrench.cross", 12, 0.01), ("arm.torque", 7, 0.005)]
 )
 def test_several_numbers_are_at_ends_of_both_signs_and_keep_them_at_every_factor(landing_scenario, path, size, end):
     once, thrice = (np.array([values(landing_scenario, path, k, seed) for seed in range(20)]) for k in (1.0, 3.0))

@@ -92,7 +92,7 @@ def made_up(**changes):
         )
         t["hinge_force"] = before["force"] + given["hinge_n"]
         t["tau_uav"] = tau_att + given["effectiveness"] * arrived + given["rotors_nm"]
-        t["rotor_thrust"] = THRUST / 4
+        t["rotor_thrust"][:4] = THRUST / 4
         motion(y, t["tau_uav"] + given["wind"][3:], t["hinge_force"] + 0.0, THRUST, np.zeros(3), setting, rate)
         rate[10:] += given["wind"][:3] / uav.mass
         # Half a step of the speeds first: then the pose moves with the mean speed of the step.

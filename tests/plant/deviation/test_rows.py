@@ -15,7 +15,7 @@ MODEL = (
 
 MOVES = {
     "uav.mass": {"body_mass", "integral"},
-    "uav.cm_m": {"body_ipos", "rotors.mixer"},
+    "uav.cm_m": {"body_ipos", "rotors.mixer", "rotors.place"},
     "uav.inertia": {"body_inertia"},
     "uav.thrust": {"rotors.gain", "integral"},
     "uav.rotor": {"rotors.gain", "integral"},

@@ -25,8 +25,8 @@ SET = {
     "wrench_reversed": ({}, {"bridge": -1.0}),
     "wrench_gain": ({"size": 1.5}, {"bridge": 1.5}),
     "magnet_stuck": ({"size": 0.2}, {"residual": 0.2}),
-    "thrust_loss": ({"size": 0.3}, {"rotor": [0.7] * 4}),
-    "power_loss": ({}, {"rotor": [0.0] * 4, "unpowered": 1}),
+    "thrust_loss": ({"size": 0.3}, {"rotor": [0.7] * 8}),
+    "power_loss": ({}, {"rotor": [0.0] * 8, "unpowered": 1}),
     "encoder_offset": ({"joint": 3, "size": 0.1}, {"encoder_off": one_hot(2, value=0.1)}),
     "encoder_drift": (
         {"joint": 3, "size": 0.1},
@@ -78,7 +78,7 @@ def test_faults_of_one_device_add_up(bench_in_air):
     b = bench_in_air(faults=faults)
     b.act(0)
     now = failing(b)
-    np.testing.assert_allclose(now["rotor"], [0.4, 0.8, 0.8, 0.8])
+    np.testing.assert_allclose(now["rotor"], [0.4] + [0.8] * 7)
     assert now["bridge"] == -2.0
     assert now["encoder_off"][1] == pytest.approx(0.3)
 

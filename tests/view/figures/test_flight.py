@@ -63,7 +63,7 @@ def test_rotors_arm_and_cradle_together_carry_the_weight(landed, phases) -> None
 
 def test_rotor_thrust_is_counted_by_its_vertical_part(landed) -> None:
     ticks = landed.ticks[:1].copy()
-    ticks["truth"]["rotor_thrust"] = 1.0
+    ticks["truth"]["rotor_thrust"] = [[1.0] * 4 + [0.0] * 4]
     half = 0.5 * np.deg2rad(60.0)
     ticks["truth"]["quat"] = [np.cos(half), np.sin(half), 0.0, 0.0]
     assert upward_forces_n(ticks)[0] == pytest.approx([2.0])
