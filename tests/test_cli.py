@@ -213,7 +213,7 @@ def test_schema_is_json_and_help_has_examples() -> None:
     assert "--arm" in help_text
 
 
-@pytest.mark.parametrize("arm", ["six_axis.urdf", "seven_axis.urdf"])
+@pytest.mark.parametrize("arm", ["seven_axis.urdf", pytest.param("six_axis.urdf", marks=pytest.mark.slow)])
 def test_another_arm_takes_the_lwr_s_place(arm: str, tmp_path: Path) -> None:
     file = Path(__file__).parents[1] / "examples" / arm
     done = armland("paper", "--arm", str(file), "--ee", "tool0", "--json", "--no-figures", "--out", str(tmp_path))
