@@ -9,7 +9,7 @@ from armland.models.arm_file.reading import ArmFile
 from armland.models.arm_file.table import FIELDS, Row, unit
 from armland.models.arm_file.tree import Value
 from armland.models.arm_survey import Survey
-from armland.view.tables.verdicts import terminal, titled
+from armland.view.tables.verdicts import print_lines, terminal, titled
 
 LEGEND = (
     "f: file, a: actuator, c: default class of the file, n: the file names none, r: rule, o: option; slides in m and N; "
@@ -70,13 +70,7 @@ def print_arm(file: ArmFile, found: Survey, notes: list[str], odd: list[str]) ->
             else f"{worst:.2f} to {best:.2f} kg where it points upwards, as in a catch"
         ),
     ]
-    for line in lines:
-        console.print(Text(line))
-    for title, found_lines in (("What was made of the file", notes), ("Suspicious", odd)):
-        if found_lines:
-            console.print(Text(f"{title}:", style="bold"))
-        for line in found_lines:
-            console.print(Text(f"- {line}"))
+    print_lines(console, lines, notes, odd)
 
 
 LETTERS = {"default class": "c", "default": "n"}

@@ -6,7 +6,7 @@ from rich.text import Text
 
 from armland.models.airframe.survey import SPEED_MPS, UavSurvey
 from armland.models.airframe.table import UavRow
-from armland.view.tables.verdicts import terminal, titled
+from armland.view.tables.verdicts import print_lines, terminal, titled
 
 
 def uav_data(rows: list[UavRow], found: UavSurvey, notes: list[str], odd: list[str]) -> dict[str, Any]:
@@ -30,13 +30,7 @@ def print_uav(rows: list[UavRow], found: UavSurvey, notes: list[str], odd: list[
         else f"is {-found.carries:.3g} kg too heavy to fly",
         f"needs a magnet rated {found.magnet:.3g} N or more, and an arm that holds {found.payload:.3g} kg beside the tool",
     ]
-    for line in lines:
-        console.print(Text(line))
-    for title, found_lines in (("What was made of the file", notes), ("Suspicious", odd)):
-        if found_lines:
-            console.print(Text(f"{title}:", style="bold"))
-        for line in found_lines:
-            console.print(Text(f"- {line}"))
+    print_lines(console, lines, notes, odd)
 
 
 def _value(value: Any) -> str:

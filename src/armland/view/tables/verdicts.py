@@ -23,6 +23,17 @@ def titled(title: str, *columns: str, left: Sequence[int] = (0,)) -> Table:
     return table
 
 
+def print_lines(console: Console, lines: Sequence[str], notes: Sequence[str], odd: Sequence[str]) -> None:
+    """Print what a file of an arm or a UAV comes to, what was made of it, and what is suspicious in it."""
+    for line in lines:
+        console.print(Text(line))
+    for title, found in (("What was made of the file", notes), ("Suspicious", odd)):
+        if found:
+            console.print(Text(f"{title}:", style="bold"))
+        for line in found:
+            console.print(Text(f"- {line}"))
+
+
 def mark(holds: bool | None) -> str:
     """Whether a bound is kept, in colour; None: it was not judged."""
     if holds is None:
