@@ -14,6 +14,7 @@ the function itself.
 """
 
 import hashlib
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -141,8 +142,12 @@ def linked(types_of: Types, returns: Any = types.none) -> Callable[[Any], Any]:
     return made
 
 
+_LINKING = threading.Lock()
+
+
 def link(joints: int) -> None:
-    """Make the addresses of all linked functions known, for an arm with `joints` joints."""
-    for function in LINKED:
-        # What a function calls stands before it, for its module was imported first.
-        function.link(joints)
+    """Make the addresses of all linked functions known, for an arm with `joints` joints; waits for another thread that does so."""
+    with _LINKING:
+        for function in LINKED:
+            # What a function calls stands before it, for its module was imported first.
+            function.link(joints)

@@ -2,15 +2,21 @@
 
 import subprocess
 import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from numba import njit
+from numba.extending import overload
 
 from armland.compiled import inner as inner_code
 from armland.compiled import set_up
 
 set_up()
+
+TYPING = threading.Event()
 
 
 @njit
@@ -53,6 +59,35 @@ def test_functions_that_compiled_code_calls_are_linked_and_can_be_called_as_well
     assert is_inner(doubled) == is_inner(grown) == [False]
     assert is_inner(root_of) == [True]
     assert all_of_it(1.0) == 4.0 + 2.0 + 1.0 + 1.0
+
+
+def still_typed():
+    return None
+
+
+@overload(still_typed)
+def _still_typed():
+    TYPING.set()
+    time.sleep(0.5)
+    return lambda: 0.0
+
+
+@njit
+def asked_by_two(x):
+    return x + 2.0
+
+
+@njit
+def slowly_compiled(x):
+    return asked_by_two(x) + still_typed()
+
+
+def test_a_function_that_another_thread_compiles_as_an_inner_one_can_be_called(ours):
+    with ThreadPoolExecutor(1) as pool:
+        whole = pool.submit(slowly_compiled, 1.0)
+        assert TYPING.wait(30.0)
+        assert asked_by_two(1.0) == 3.0
+        assert whole.result() == 3.0
 
 
 def test_exception_of_an_inner_function_arrives(ours):

@@ -60,10 +60,14 @@ def defer() -> None:
 
 
 def _defer_compilation(module: Any, caching: Any) -> None:
+    from numba.core.compiler_lock import global_compiler_lock
+
     functions, compiler = module.Dispatcher, module._FunctionCompiler
     compile_, template, add = functions.compile, functions.get_call_template, functions.add_overload
     flags, save = compiler._customize_flags, caching.Cache.save_overload
 
+    # Whole, not in parts: what another thread compiles as an inner function meanwhile would pass for one with an entry.
+    @global_compiler_lock
     def compile_as(self: Any, signature: Any) -> Any:
         arguments = tuple(module.sigutils.normalize_signature(signature)[0])
         existing = self.overloads.get(arguments)

@@ -145,7 +145,8 @@ def fly_prepared(flight: Flight, log: Path | None = None, progress: Progress | N
     period = flight.period_ns
     with Recorder(log, made.joints, period, metadata, scenario=scenario.text, keep_in_memory=True) as recorder:
         wall = loops.fly(simulator, controller, made, recorder, progress)
-    judgement, simulated = judge(recorder.ticks, flight.brief), 1e-9 * period * len(recorder.ticks)
+    ticks = recorder.ticks
+    judgement, simulated = judge(ticks, flight.brief), 1e-9 * period * len(ticks)
     result = {
         **_result(judgement, metadata),
         "law_failure": law_failure(made, controller),
@@ -155,7 +156,7 @@ def fly_prepared(flight: Flight, log: Path | None = None, progress: Progress | N
         "wall_s": wall,
         "real_time_factor": simulated / wall,
     }
-    return Episode(result, recorder.ticks, log, judgement, {**metadata, "period_ns": str(period)})
+    return Episode(result, ticks, log, judgement, {**metadata, "period_ns": str(period)})
 
 
 def attempt(scenario: Scenario, mission: str, seed: int, **more: Any) -> dict[str, Any]:
