@@ -2,18 +2,15 @@
 
 | symbol | name | unit |
 |---|---|---|
-| T(p) = c₂p² + c₁p + c₀ | `THRUST_CURVE`: thrust of one rotor at p percent of its motor's command, measured on a bench | N |
 | 1/T₁, d | `attitude_1ps`, `dead_s`: attitude that follows its set-point as e^{−ds}/(T₁s + 1), in hover | 1/s, s |
 | τ | `lag_s`: rotor lag, measured on the bench | s |
-| k | torque given over torque meant, at a thrust below hover's | 1 |
 
 **Gains.** PD on the body and the rotors' lag answer with k_p/(Jτs³ + Js² + k_d s + k_p). Its mean delay k_d/k_p and its next moment
 J/k_p are those of the published response for
 
     k_p = J/(d²/2 + dT₁),  k_d = k_p (d + T₁)
 
-so τ does not enter. **k.** A controller on board that turns torque into motor commands by the slope of T in hover gives
-T′(p)/T′(p_hover) of it at any other thrust; one that knows T gives all of it. `linear` is between the two: 1 is the first.
+so τ does not enter. How much of a torque is made at another thrust than hover's is `models.airframe.slope`'s.
 **Torque limit.** What the rotors have left at the thrust, up or down, whichever is less; no other limit is published.
 """
 
@@ -25,10 +22,8 @@ import numpy as np
 from armland.models.parameters import uav_parameters
 from armland.scenario import Scenario
 
-THRUST_CURVE = (1.112e-4, 7.705e-3, 0.0924)
-"""c₂, c₁, c₀: bench of the AR.Drone 2.0 in darenlee/SimulinkARDroneTarget, d512bda."""
 MOTOR_M = 0.127
-"""Distance of a rotor from the roll and the pitch axis, the same source."""
+"""Distance of a rotor from the roll and the pitch axis: darenlee/SimulinkARDroneTarget, d512bda."""
 
 
 class Datum(NamedTuple):
@@ -55,26 +50,22 @@ DATA = {
 """What the demonstrator follows from, by name. Settled before any experiment was flown with it."""
 
 
-def slope_ratio(thrust: float, hover: float) -> float:
-    """T′ at the `thrust` of one rotor over T′ at that of `hover`, both N."""
-    c2, c1, c0 = THRUST_CURVE
-    # T′ = √(c₁² + 4c₂(T − c₀)), from T(p) solved for p.
-    here, there = (np.sqrt(c1**2 + 4.0 * c2 * max(t - c0, 0.0)) for t in (thrust, hover))
-    return float(here / there)
-
-
 def derived(scenario: Scenario, data: Mapping[str, float]) -> dict[str, Any]:
     """Changes to a scenario that follow from `data`, values by the names of `DATA`."""
     uav, rotors = uav_parameters(scenario), scenario.rotors
-    inertia, one = np.diag(uav.inertia), data["thrust_n"] / 4.0
-    hover = 0.25 * uav.mass * abs(scenario.environment.gravity_mps2[2])
-    k = data["strength"] * (1.0 + data["linear"] * (slope_ratio(one, hover) - 1.0))
+    inertia, one, k = np.diag(uav.inertia), data["thrust_n"] / 4.0, data["strength"]
     d, t1 = data["dead_s"], 1.0 / data["attitude_1ps"]
     kp = inertia / (0.5 * d**2 + d * t1)
     room = 4.0 * min(rotors.max_thrust_n - one, one - rotors.min_thrust_n)
     return {
         "rotors": {"time_constant_s": data["lag_s"]},
-        "onboard": {"kp_nm": tuple(k * kp), "kd_nms": tuple(k * kp * (d + t1))},
+        "onboard": {
+            "controller": "quaternion_pd",
+            "lead_s": 0.0,
+            "kp_nm": tuple(k * kp),
+            "kd_nms": tuple(k * kp * (d + t1)),
+            "slope_share": data["linear"],
+        },
         "link": {
             # What of the base's 50 ms is not dead time on board is on the way there.
             "uplink_delay_ms": data["way_ms"] + 1e3 * (DATA["dead_s"].value - d),

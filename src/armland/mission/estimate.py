@@ -21,6 +21,7 @@ from armland.linking import linked, named
 from armland.mission.load import estimate_load
 from armland.mission.screening import screened
 from armland.mission.sight import MAGNET_ON, estimate_plate, known_push, lift_of, look_at_grip, take_attitude
+from armland.models.airframe.slope import slope_layout, torque_share
 from armland.models.operational import smallest_singular_value
 from armland.records import Record, layout
 from armland.rotations import Array
@@ -64,6 +65,7 @@ def told_layout() -> np.dtype:
             ),  # 1: the tool's inertia force at the reference's acceleration is taken off the reading
             ("onboard_kp", "f8", (3,)),  # N·m/rad [B]
             ("onboard_kd", "f8", (3,)),  # N·m·s/rad [B]
+            *slope_layout(),
             ("filter", layouts.told_layout()),
             ("wrench", wrench.told_layout()),
             ("contact", contact.told_layout()),
@@ -219,5 +221,6 @@ def predict_torque(q_d: Array, p: Record, e: Record) -> None:
     still = np.zeros(3)
     gains = QuaternionPdGains(p.onboard_kp, p.onboard_kd)
     tau_att, _ = quaternion_pd(e.quat, e.omega, q_d, still, still, gains, initial_memory(still))
+    made = torque_share(e.thrust, p)
     for i in range(3):
-        e.tau_att[i] = tau_att[i]
+        e.tau_att[i] = made * tau_att[i]

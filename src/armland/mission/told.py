@@ -20,7 +20,9 @@ from armland.mission.feasibility.weight import hover_max
 from armland.mission.reference import view
 from armland.mission.table.mission import Start
 from armland.models.airframe.lift import lift_range
+from armland.models.airframe.slope import tell_slope
 from armland.models.arm import ArmModel
+from armland.models.parameters import rotor_count
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -124,6 +126,7 @@ def _estimate(p: Records, t: Telling) -> None:
     # The published laws take the reading as it is; (X.6) takes the tool's inertia force off by itself.
     p["tool_follows"] = 0.0 if hinged else 1.0
     p["onboard_kp"], p["onboard_kd"] = s.onboard.kp_nm, s.onboard.kd_nms
+    tell_slope(p, s, t.flyer.body.mass * t.flyer.gravity, rotor_count(s))
     p["filter"] = layouts.told(s, t.flyer.mass, t.flyer.body.lever)
     p["wrench"], p["contact"] = wrench.told(s), contact.told(s)
     bandwidth, most = s.estimation.load_observer_rad_s, s.estimation.load_observer_limit_n

@@ -44,6 +44,11 @@ class Rotors(Section):
     time_constant_s: of.PositiveSeconds = key(0.05, "lag of a rotor's thrust behind its set-point")
     drag_torque_m: of.PositiveCoefficient = key(0.02, "reaction torque per thrust, N·m/N")
     inflow: bool = key(True, "thrust by momentum theory at constant rotor speed, models.inflow (I.2)")
+    curve: tuple[of.Coefficient, of.Coefficient, of.Coefficient] = key(
+        (1.112e-4, 7.705e-3, 0.0924),
+        "c2, c1, c0 of one rotor's thrust in N, c2 p^2 + c1 p + c0 at p percent of its command; used by onboard.slope_share "
+        "(AR.Drone 2.0 motor bench)",
+    )
     radius_m: of.Length = key(0.1, "of a rotor; assumption, no source gives the AR.Drone's")
     slope: Annotated[float, between(1e-9, 100.0)] = key(
         0.7,
@@ -87,6 +92,11 @@ class Onboard(Section):
     kp_nm: of.Gain3 = key((0.4, 0.4, 0.3), "N·m per rad of attitude error, body axes")
     kd_nms: of.Gain3 = key((0.056, 0.056, 0.06), "N·m per rad/s, body axes")
     lead_s: Annotated[float, between(0.0, 1.0)] = key(0.0, "rotor lag that the cascade's derivative makes up for")
+    slope_share: Annotated[float, between(0.0, 1.0)] = key(
+        0.0,
+        "share by which its torque follows the slope of rotors.curve, relative to hover's: 0 for a controller that knows the "
+        "curve, 1 for one that takes its slope for that of hover",
+    )
     observer_rad_s: of.Bandwidth = key(0.0, "bandwidth of the torque disturbance observer on board; 0 is none")
     rotor_watch: Annotated[float, between(0.0, 0.95)] = key(
         0.6, "share of its due thrust below which a rotor counts as lost on board; 0: no watch"

@@ -16,6 +16,7 @@ from numba import njit
 
 from armland.control.laws.station_keeping import StationGains, StationReference, keep_station
 from armland.models.airframe.allocation import allocation_layout, share_out, tell_allocation
+from armland.models.airframe.slope import slope_layout, tell_slope, torque_share
 from armland.plant.devices.attitude import attitude_layout, attitude_torque, find_disturbance, tell_attitude
 from armland.plant.devices.link import WEAK_SAMPLES, arrive
 from armland.plant.noise import Noise
@@ -63,6 +64,7 @@ def told_layout(joints: int) -> np.dtype:
             *((name, "f8") for name in HOVER),
             ("allocation", np.dtype(allocation_layout())),
             *attitude_layout(),
+            *slope_layout(),
         ]
     )
 
@@ -103,6 +105,7 @@ def tell(told: Records, scenario: Scenario, scene: Scene, effect: Array) -> None
     told["tilt_max"], told["lift_min"], told["thrust_max"] = h.tilt_max_rad, h.lift_min_n, h.thrust_max_n
     tell_allocation(told["allocation"], effect, rotors.min_thrust_n, rotors.max_thrust_n)
     tell_attitude(told, scenario)
+    tell_slope(told, scenario, scene.uav_mass * abs(scenario.environment.gravity_mps2[2]), effect.shape[1])
 
 
 @njit(cache=True)
@@ -148,8 +151,9 @@ def fly(k: int, world: Record, noise: Noise, row: int, t: Record) -> None:
         return
     torque = attitude_torque(kept.imu.quat, kept.imu.rate, q_d, p, s)
     found = find_disturbance(kept.imu.rate, extra, asked, told.rotors.mixer, p, s)
+    made = torque_share(s.thrust, p)
     for i in range(3):
-        torque[i] = torque[i] + extra[i] - found[i]
+        torque[i] = made * (torque[i] + extra[i] - found[i])
     rotor = share_out(s.thrust, torque, p.allocation)
     for i in range(MOST_ROTORS):
         asked[i] = rotor[i]
