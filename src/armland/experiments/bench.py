@@ -41,6 +41,13 @@ DATA = {
     "dead_s": Datum(0.05, 0.025, 0.05, "s", "tum_ardrone's base of the control delay; the rest of it is on the link"),
     "way_ms": Datum(25.0, 12.5, 50.0, "ms", "tum_ardrone's delay of navdata each way; half of it; 20 kB packets"),
     "lag_s": Datum(0.05, 0.04, 0.06, "s", "bench, 20/(s + 20); range: assumption, a fifth either way"),
+    "integral_s": Datum(
+        1.0,
+        0.5,
+        2.0,
+        "s",
+        "AR.Drone: P on angles, PI on rates (Bristeau et al. 2011); its time has no source, a factor of 2 either way",
+    ),
     "linear": Datum(1.0, 0.0, 1.0, "1", "no source: torque by the slope in hover, or by the whole thrust curve"),
     "strength": Datum(1.0, 0.93, 1.07, "1", "bench: 0.05 N from motor to motor at 0.76 N"),
     "roll_nm": Datum(0.0, -0.011, 0.011, "N·m", "the same four rotors unequal by as much at half the weight"),
@@ -60,10 +67,11 @@ def derived(scenario: Scenario, data: Mapping[str, float]) -> dict[str, Any]:
     return {
         "rotors": {"time_constant_s": data["lag_s"]},
         "onboard": {
-            "controller": "quaternion_pd",
+            "controller": "cascade",
             "lead_s": 0.0,
             "kp_nm": tuple(k * kp),
             "kd_nms": tuple(k * kp * (d + t1)),
+            "integral_s": data["integral_s"],
             "slope_share": data["linear"],
         },
         "link": {

@@ -92,6 +92,9 @@ class Onboard(Section):
     kp_nm: of.Gain3 = key((0.4, 0.4, 0.3), "N·m per rad of attitude error, body axes")
     kd_nms: of.Gain3 = key((0.056, 0.056, 0.06), "N·m per rad/s, body axes")
     lead_s: Annotated[float, between(0.0, 1.0)] = key(0.0, "rotor lag that the cascade's derivative makes up for")
+    integral_s: of.Seconds = key(
+        0.0, "integral time of the cascade's rate loop, which takes away what leans the UAV for good; 0: no integral"
+    )
     slope_share: Annotated[float, between(0.0, 1.0)] = key(
         0.0,
         "share by which its torque follows the slope of rotors.curve, relative to hover's: 0 for a controller that knows the "

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from armland.plant.scene.uav import PLAY, PLAY_NPM
 from armland.plant.simulator import Simulator
 
 HOME = np.deg2rad([-4.72, -109.96, -7.94, -71.39, 11.82, 39.34, -7.2])
@@ -122,6 +123,27 @@ def test_cable_across_the_hinge_turns_the_plate_to_its_own_angle(made):
     m, n = other.scene.model, plain.scene.model
     np.testing.assert_allclose(m.dof_frictionloss[dof] - n.dof_frictionloss[dof], [2e-4, 2e-4, 0.0], atol=1e-15)
     np.testing.assert_allclose(m.dof_damping[dof] - n.dof_damping[dof], [1e-5, 1e-5, 0.0], atol=1e-15)
+
+
+def joint_of_play(sim):
+    return mujoco.mj_name2id(sim.scene.model, mujoco.mjtObj.mjOBJ_JOINT, PLAY)
+
+
+def test_plate_moves_freely_over_the_play_and_no_farther(made):
+    """It hangs at the lower end; pushed up, it comes to rest at the upper one."""
+    sim = made("cradle", hinge={"play_m": 4e-4})
+    m, d, plate = sim.scene.model, sim.data, sim.scene.plate_body
+    assert joint_of_play(made("cradle")) < 0 <= joint_of_play(sim)
+
+    def rests(push):
+        d.xfrc_applied[plate, 2] = push
+        mujoco.mj_step(m, d, nstep=2000)
+        return float(d.joint(PLAY).qpos[0])
+
+    weight = 9.81 * float(m.body_mass[plate])
+    assert rests(0.0) == pytest.approx(-2e-4 - weight / PLAY_NPM, abs=1e-8)
+    assert rests(weight + 1.0) == pytest.approx(2e-4 + 1.0 / PLAY_NPM, abs=1e-7)
+    assert rests(weight + 2.0) == pytest.approx(2e-4 + 2.0 / PLAY_NPM, abs=1e-7)
 
 
 def test_cradle_stands_beside_and_turned_and_the_uav_on_it_with_it(made):

@@ -1,8 +1,10 @@
 """Every row of the deviations does something, and where it belongs: in the model, in a device's record, or at the start."""
 
+import mujoco
 import numpy as np
 import pytest
 
+from armland.plant.scene.uav import PLAY
 from armland.plant.simulator import Simulator
 from armland.scenario.deviation import rows
 
@@ -10,7 +12,7 @@ HOME = np.deg2rad([-4.72, -109.96, -7.94, -71.39, 11.82, 39.34, -7.2])
 
 MODEL = (
     *("body_mass", "body_inertia", "body_ipos", "body_pos", "body_quat", "dof_damping", "dof_frictionloss"),
-    *("dof_armature", "jnt_stiffness", "qpos_spring", "pair_friction"),
+    *("dof_armature", "jnt_stiffness", "jnt_range", "qpos_spring", "pair_friction"),
 )
 
 MOVES = {
@@ -72,6 +74,7 @@ MOVES = {
     "hinge.damping_nms": {"dof_damping"},
     "hinge.stiffness_nm": {"jnt_stiffness"},
     "hinge.askew_deg": {"qpos_spring"},
+    "hinge.play_m": {"play"},
     "cradle.place_m": {"body_pos", "put_down"},
     "cradle.heading_deg": {"body_quat"},
     "cradle.friction": {"pair_friction"},
@@ -92,10 +95,22 @@ def flat(record, before=""):
     return out
 
 
+def apart_from_play(out, model):
+    """Take the joint that only a hinge with play has out of the model's numbers, and put its range beside them."""
+    joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, PLAY)
+    if joint >= 0:
+        out["play"] = out["jnt_range"][joint].copy()
+        for kind, at in (("jnt", joint), ("dof", model.jnt_dofadr[joint]), ("qpos", model.jnt_qposadr[joint])):
+            for name in MODEL:
+                if name.startswith(kind):
+                    out[name] = np.delete(out[name], at, axis=0)
+
+
 def made_of(scenario):
     """All numbers that a plant is made of, by name."""
     sim = Simulator(scenario, HOME, "air")
     out = {name: getattr(sim.scene.model, name).copy() for name in MODEL} | flat(sim.world["told"])
+    apart_from_play(out, sim.scene.model)
     sim.connect()
     out["put_down"], out["attitude"] = sim.scene.put_down.copy(), sim.data.qpos[sim.scene.uav_qpos[3:]].copy()
     out["integral"] = sim.world["kept"]["onboard"]["integral"].copy()

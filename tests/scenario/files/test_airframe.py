@@ -70,6 +70,7 @@ def test_what_is_no_uav_is_refused(made, text, words):
 
 def test_unknown_name_is_refused_with_those_that_there_are():
     with pytest.raises(
-        ConfigurationError, match="there is no such file; UAVs that come with armland are ardrone2, crazyflie"
+        ConfigurationError,
+        match="there is no such file; UAVs that come with armland are ardrone2, ardrone2_bench, crazyflie",
     ):
         load_scenario("landing", {"airframe": "x5000"})

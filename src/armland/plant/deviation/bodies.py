@@ -6,6 +6,7 @@ import numpy as np
 from armland.plant.deviation.drawn import Values
 from armland.plant.scene.arm import scale_inertia
 from armland.plant.scene.composition import Scene
+from armland.plant.scene.uav import LEAST_PLAY_M, PLAY
 from armland.rotations import Array, from_rotation_vector, multiply
 from armland.scenario import Scenario
 
@@ -62,6 +63,9 @@ def _hinge(values: Values, model: mujoco.MjModel, scene: Scene) -> None:
     joints = model.dof_jntid[crossed]
     model.jnt_stiffness[joints] += value(values, "hinge.stiffness_nm")
     model.qpos_spring[model.jnt_qposadr[joints]] += np.deg2rad(values.get("hinge.askew_deg", 0.0))
+    if "hinge.play_m" in values:
+        half = 0.5 * max(value(values, "hinge.play_m"), LEAST_PLAY_M)
+        model.jnt_range[model.joint(PLAY).id] = [-half, half]
 
 
 def _cradle(values: Values, model: mujoco.MjModel) -> Array:

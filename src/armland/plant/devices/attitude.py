@@ -31,6 +31,9 @@ from armland.scenario import Scenario
 CONTROLLERS = ("quaternion_pd", "geometric", "cascade")
 GEOMETRIC, CASCADE = 1, 2
 
+INTEGRAL_RAD = 0.2
+"""Lean that its integral can make up for; assumption."""
+
 UNLIMITED = 1e9
 """rad/s and N·m: the cascade's own limits are not used, the rotors have theirs."""
 
@@ -44,6 +47,8 @@ def attitude_layout() -> list[Any]:
         ("k_angle", "f8", (3,)),  # the cascade's gains, see `tell_attitude`
         ("k_rate", "f8", (3,)),
         ("k_change", "f8", (3,)),
+        ("k_leaning", "f8", (3,)),  # N·m/rad, of the rate loop's integral
+        ("most_leaning", "f8", (3,)),  # N·m
         ("period_s", "f8"),
         ("inertia", "f8", (3, 3)),
         ("observer", "f8"),
@@ -59,6 +64,9 @@ def tell_attitude(told: Records, scenario: Scenario) -> None:
     # PD times (1 + lead s): the cascade's derivative on the rate makes up for the rotors' lag.
     told["k_rate"] = told["kd"] + told["kp"] * o.lead_s
     told["k_angle"], told["k_change"] = told["kp"] / told["k_rate"], told["kd"] * o.lead_s
+    if o.integral_s > 0.0:
+        told["k_leaning"] = told["k_rate"] / o.integral_s
+    told["most_leaning"] = INTEGRAL_RAD * told["kp"]
     told["lag_gain"] = 1.0 - np.exp(-1.0 / (o.rate_hz * scenario.rotors.time_constant_s))
     told["inertia"] = uav_parameters(scenario).inertia
 
@@ -72,19 +80,20 @@ def attitude_torque(quat: Array, omega: Array, q_d: Array, p: Record, s: Record)
         omega: measured rates (3,), rad/s, B.
         q_d: desired attitude (4,).
         p: fields of `attitude_layout`.
-        s: `filtered` (3,) rad/s is updated.
+        s: `filtered` (3,) rad/s and `leaning` (3,) N·m, the cascade's integral, are updated.
     """
     still = np.zeros(3)
-    memory = AttitudeMemory(still, s.filtered.copy())
+    memory = AttitudeMemory(s.leaning.copy(), s.filtered.copy())
     if p.controller == GEOMETRIC:
         gains_g = GeometricGains(p.kp, p.kd, p.inertia)
         torque, _ = geometric(quat.copy(), omega.copy(), q_d, still, still, gains_g, memory)
     elif p.controller == CASCADE:
         far = np.array([UNLIMITED, UNLIMITED, UNLIMITED])
-        gains_c = CascadeGains(p.k_angle, far, p.k_rate, still, p.k_change, far, DERIVATIVE_LAG_S, p.period_s)
+        gains_c = CascadeGains(p.k_angle, far, p.k_rate, p.k_leaning, p.k_change, far, DERIVATIVE_LAG_S, p.period_s)
         torque, memory = cascade(quat.copy(), omega.copy(), q_d, still, still, gains_c, memory)
         for i in range(3):
             s.filtered[i] = memory.rate[i]
+            s.leaning[i] = min(max(memory.integral[i], -p.most_leaning[i]), p.most_leaning[i])
     else:
         gains_q = QuaternionPdGains(p.kp, p.kd)
         torque, _ = quaternion_pd(quat.copy(), omega.copy(), q_d, still, still, gains_q, memory)

@@ -80,6 +80,7 @@ def kept_layout(joints: int) -> np.dtype:
             ("integral", "f8", (3,)),  # of the hover's position loop; kept: what it knows of its own thrust
             ("thrust", "f8"),  # N, set-point in use
             ("filtered", "f8", (3,)),  # rate that the attitude loop's derivative has filtered, rad/s
+            ("leaning", "f8", (3,)),  # N·m, integral of the attitude loop
             ("torque", "f8", (3,)),  # N·m, that the rotors are believed to give, of the observer
             ("impulse", "f8", (3,)),  # N·m·s, of that and of −ω × L since the last sample
             ("momentum", "f8", (3,)),  # N·m·s, at the last sample
@@ -150,6 +151,9 @@ def fly(k: int, world: Record, noise: Noise, row: int, t: Record) -> None:
             asked[i] = 0.0
         return
     torque = attitude_torque(kept.imu.quat, kept.imu.rate, q_d, p, s)
+    if mode == LANDED:
+        # What the cradle turns is not the rotors' to turn back.
+        s.leaning[:] = 0.0
     found = find_disturbance(kept.imu.rate, extra, asked, told.rotors.mixer, p, s)
     made = torque_share(s.thrust, p)
     for i in range(3):

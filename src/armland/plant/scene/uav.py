@@ -12,6 +12,7 @@ from armland.models.parameters import STEEL_KGM3, rotor_set, uav_file, uav_param
 from armland.plant.scene.arm import add_capsule
 from armland.rotations import Array
 from armland.scenario import Scenario
+from armland.scenario.deviation import ranges
 from armland.scenario.gear import Hinge, Plate, Skids
 
 UAV = "uav/"
@@ -27,6 +28,16 @@ ON_UAV = ("hinge_y", "hinge_x", "swivel")
 """Joints of a hanging plate, from the UAV to the plate: the plate's attitude in the UAV's is Ry Rx Rz of them."""
 
 AXES = {"swivel": [0, 0, 1], "hinge_x": [1, 0, 0], "hinge_y": [0, 1, 0]}
+
+PLAY = f"{UAV}play"
+"""Joint between UAV and plate along the hinge's upright axis, where the hinge has play."""
+
+LEAST_PLAY_M = 1e-9
+"""A range of no width is none to MuJoCo."""
+
+PLAY_NPM, PLAY_NSPM, PLAY_R = 5e4, 20.0, 20.0
+"""Both ends of the play, N/m and N·s/m: the hull behind the hinge gives way by 0.1 mm under the AR.Drone's weight, assumption;
+and R of `set_stops`, 1/kg, between the inverse masses of a UAV on a plate that is held and of a plate alone."""
 
 STOP_R = 2000.0
 """rad/s² per N·m, see `set_stops`."""
@@ -79,12 +90,21 @@ def let_fly(spec: mujoco.MjSpec, uav: mujoco.MjSpec, scenario: Scenario) -> mujo
     for i, (one, other) in enumerate(beams(rotor_set(scenario).place)):
         add_capsule(body, f"frame_{i + 1}", [*(cm + one), *(cm + other)], FRAME_RADIUS_M)
     _add_skids(body, scenario.skids)
-    _hang_plate(body, site(uav, "pivot").pos.copy(), scenario.plate, scenario.hinge, uav.compiler.degree)
+    plate = body.add_body(name="plate", pos=site(uav, "pivot").pos.copy())
+    if "hinge.play_m" in ranges(scenario.deviation):
+        plate.add_joint(
+            name="play",
+            type=mujoco.mjtJoint.mjJNT_SLIDE,
+            axis=[0, 0, 1],
+            limited=True,
+            range=[-LEAST_PLAY_M, LEAST_PLAY_M],
+        )
+    _hang_plate(plate, scenario.plate, scenario.hinge, uav.compiler.degree)
     return body
 
 
 def set_stops(model: mujoco.MjModel, hinge: Hinge) -> None:
-    """Give the hinge's stops stiffness k and damping c of their own, in the compiled `model`.
+    """Give the hinge's stops, those of its play too, stiffness k and damping c of their own, in the compiled `model`.
 
     MuJoCo scales a stop's stiffness with the lighter side's inertia, here the plate's of 6e-6 kg·m²: a UAV would lean through it.
     The force of a limit's row is −(K q + B v)/(A + R), with the inverse inertia A behind it: 100 rad/s² per N·m for a UAV on a
@@ -92,13 +112,17 @@ def set_stops(model: mujoco.MjModel, hinge: Hinge) -> None:
     far below the latter it leaves the free plate stable, c R < 1/step. So d = A₀/(A₀ + R). Source: MuJoCo's documentation,
     "Solver parameters".
     """
-    for name in ("hinge_x", "hinge_y"):
-        joint = model.joint(f"{UAV}{name}")
-        free = float(model.dof_invweight0[joint.dofadr[0]])
-        d = free / (free + STOP_R)
-        # MuJoCo divides by d² and d what it is given.
-        model.jnt_solref[joint.id] = [-hinge.stop_nm * STOP_R * d * d, -hinge.stop_nms * STOP_R * d]
-        model.jnt_solimp[joint.id] = [d, d, 0.001, 0.5, 2.0]
+    stops = {f"{UAV}{name}": (hinge.stop_nm, hinge.stop_nms, STOP_R) for name in ("hinge_x", "hinge_y")}
+    stops |= {PLAY: (PLAY_NPM, PLAY_NSPM, PLAY_R)}
+    for name, (k, c, ratio) in stops.items():
+        joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
+        if joint < 0:
+            continue
+        free = float(model.dof_invweight0[model.jnt_dofadr[joint]])
+        d = free / (free + ratio)
+        # What MuJoCo is given it divides by d² and d, and multiplies the former by d again.
+        model.jnt_solref[joint] = [-k * ratio * d, -c * ratio * d]
+        model.jnt_solimp[joint] = [d, d, 0.001, 0.5, 2.0]
 
 
 def _add_hinge_joint(body: mujoco.MjsBody, name: str, pos: Array, hinge: Hinge, degree: bool) -> None:
@@ -115,8 +139,7 @@ def _add_hinge_joint(body: mujoco.MjsBody, name: str, pos: Array, hinge: Hinge, 
     )
 
 
-def _hang_plate(body: mujoco.MjsBody, pivot: Array, p: Plate, hinge: Hinge, degree: bool) -> None:
-    plate = body.add_body(name="plate", pos=pivot)
+def _hang_plate(plate: mujoco.MjsBody, p: Plate, hinge: Hinge, degree: bool) -> None:
     for name in ON_UAV:
         _add_hinge_joint(plate, name, np.zeros(3), hinge, degree)
     cylinder, metal = mujoco.mjtGeom.mjGEOM_CYLINDER, [0.72, 0.74, 0.77, 1]

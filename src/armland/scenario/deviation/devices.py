@@ -203,6 +203,11 @@ class HingeDeviation(Device):
     askew_deg: Own = deviates(
         (-2.0, 2.0), (-30.0, 30.0), "angle, each axis, at which that cable leaves the plate; assumption", "2"
     )
+    play_m: Own = deviates(
+        (0.0, 5e-5),
+        (0.0, 0.005),
+        "m, play along the hinge's upright axis; assumption: two small ball bearings (ISO 5753: 2 to 13 µm each) and their seats",
+    )
 
 
 class CradleDeviation(Device):
