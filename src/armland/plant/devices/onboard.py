@@ -150,17 +150,25 @@ def fly(k: int, world: Record, noise: Noise, row: int, t: Record) -> None:
         for i in range(MOST_ROTORS):
             asked[i] = 0.0
         return
+    torque = _torque(mode, q_d, extra, world)
+    rotor = share_out(s.thrust, torque, p.allocation)
+    for i in range(MOST_ROTORS):
+        asked[i] = rotor[i]
+
+
+@njit(cache=True)
+def _torque(mode: int, q_d: Array, extra: Array, world: Record) -> Array:
+    told, kept = world.told, world.kept
+    p, s = told.onboard, kept.onboard
     torque = attitude_torque(kept.imu.quat, kept.imu.rate, q_d, p, s)
     if mode == LANDED:
         # What the cradle turns is not the rotors' to turn back.
         s.leaning[:] = 0.0
-    found = find_disturbance(kept.imu.rate, extra, asked, told.rotors.mixer, p, s)
+    found = find_disturbance(kept.imu.rate, extra, kept.rotors.asked, told.rotors.mixer, p, s)
     made = torque_share(s.thrust, p)
     for i in range(3):
         torque[i] = made * (torque[i] + extra[i] - found[i])
-    rotor = share_out(s.thrust, torque, p.allocation)
-    for i in range(MOST_ROTORS):
-        asked[i] = rotor[i]
+    return torque
 
 
 @njit(cache=True)
