@@ -188,13 +188,12 @@ def arm_settings(given: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
-def load(name: str, given: dict[str, Any], hinged: bool = False) -> "Scenario":
+def load(name: str, given: dict[str, Any]) -> "Scenario":
     """The scenario `name` with what the command line replaces.
 
     Args:
         name: file, or name of one that comes with armland.
         given: options of `MADE`, and `DEVIATION` where the command has it.
-        hinged: whether the mission begins with the UAV on the arm, at the start of a path, or at a place of its own.
 
     Raises:
         ConfigurationError: all that is wrong with it.
@@ -208,10 +207,7 @@ def load(name: str, given: dict[str, Any], hinged: bool = False) -> "Scenario":
     if arm is not None:
         from armland.models.arm_file.names import arm_path
 
-        other: dict[str, Any] = dict.fromkeys(("ee", "elbow_joint", "home_rad"))
-        # Where the LWR stands says nothing about where another arm should.
-        where = {"trajectory": {"start_m": None}} if hinged else {"place": {"home_deg": None}}
-        overrides = {"arm": other | {"file": str(arm_path(arm))}, **where}
+        overrides = {"arm": {"file": str(arm_path(arm))}}
     if changed := arm_settings(given):
         update(overrides, {"arm": changed})
     if given.get("deviation") is not None:

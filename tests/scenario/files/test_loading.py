@@ -329,3 +329,18 @@ def test_name_inside_a_file_that_no_file_can_have_is_no_traceback(tmp_path, key,
 @pytest.mark.parametrize("overrides", [{"a": 2**70}, {"run": {"seed": float("inf")}}, {"title": "\ud800"}, {3: 4}])
 def test_override_that_no_file_could_hold_is_refused(overrides) -> None:
     assert refusal("landing", overrides)
+
+
+def test_what_was_said_of_one_arm_says_nothing_of_another(tmp_path) -> None:
+    (tmp_path / "other.xml").write_text("<mujoco/>", encoding="utf-8")
+    (tmp_path / "mine.toml").write_text('[arm]\nfile = "other.xml"\n[place]\nabove_m = 0.3\n', encoding="utf-8")
+    plain, own = load_scenario("landing"), load_scenario(tmp_path / "mine.toml")
+    changed = load_scenario("landing", {"arm": {"file": str(tmp_path / "other.xml"), "ee": "tool0"}})
+    assert (plain.arm.elbow_joint, plain.arm.ee) == ("A3", "flange")
+    assert plain.place.home_deg is not None
+    assert own.place.above_m == 0.3
+    for other, ee in ((own, None), (changed, "tool0")):
+        assert (other.arm.elbow_joint, other.arm.ee, other.place.home_deg) == (None, ee, None)
+        assert other.place.catch_m == plain.place.catch_m
+    # The same arm again is no other one.
+    assert load_scenario("landing", {"arm": {"file": "lwr4.xml"}}).place.home_deg == plain.place.home_deg

@@ -69,9 +69,9 @@ def paper(**given: Any) -> None:
     if law is not None and not compared:
         raise ConfigurationError(f"--law needs --compare here; `armland run E3 --law {law}` flies one experiment by it")
     chosen = "compare" if compared and given["scenario"] == "paper" else given["scenario"]
-    loaded = options.load(chosen, given, hinged=True)
+    loaded = options.load(chosen, given)
     if samples is not None:
-        _spread(loaded, options.load("paper_bench", given, hinged=True), given, ready())
+        _spread(loaded, options.load("paper_bench", given), given, ready())
     (_factorial if crossed else _compare if compared else _paper)(loaded, given, ready())
 
 

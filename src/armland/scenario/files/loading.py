@@ -45,7 +45,7 @@ def load_scenario(path: str | Path = "landing", overrides: dict[str, Any] | None
     data = _based(own, path, found, asked)
     update(own, extra)
     _resolve_files(extra, path.parent)
-    update(data, extra)
+    _lay(data, extra)
     try:
         scenario = Scenario.model_validate_json(as_json(data))
     except ValidationError as e:
@@ -119,8 +119,19 @@ def _framed(below: dict[str, Any], frame: Any, data: dict[str, Any], path: Path,
     else:
         layers = (data,)
     for layer in layers:
-        update(below, layer)
+        _lay(below, layer)
     return below
+
+
+def _lay(below: dict[str, Any], layer: dict[str, Any]) -> None:
+    # Put `layer` on the tables `below`. What was said of an arm, and where it stands, says nothing of another one.
+    arm, before = (x.get("arm") if isinstance(x.get("arm"), dict) else {} for x in (layer, below))
+    if arm and "file" in arm and arm["file"] != before.get("file"):
+        below["arm"] = {}
+        for table, key in (("place", "home_deg"), ("trajectory", "start_m")):
+            if isinstance(below.get(table), dict):
+                below[table].pop(key, None)
+    update(below, layer)
 
 
 def _tables(path: Path, found: list[str]) -> dict[str, Any]:
