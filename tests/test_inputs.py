@@ -18,7 +18,6 @@ DATA = Path(__file__).parent / "data"
 PUBLISHED = {"deviation": {"level": "published"}}
 
 REFUSED = {
-    "small.urdf": r"place works|No place|reach",
     "weak.urdf": r"N·m",
     "no_inertial_link3.urdf": r"'l3'.*<inertial>",
     "t3_unbalanced.urdf": r"'l7'.*0\.003",

@@ -52,6 +52,20 @@ def test_range_field_is_a_spring_that_begins_at_the_margin():
     np.testing.assert_allclose(ranged(q, low, high), [20.0 * 0.15, -20.0 * 0.10, 0.0, 0.0], atol=1e-12)
 
 
+def test_range_field_becomes_a_wall_in_the_last_third_of_the_margin():
+    """Eleven times as stiff from 0.25/3 rad on, without a jump; the same at both ends."""
+    low, high = np.array([-1.0]), np.array([1.0])
+
+    def push(gap):
+        return ranged(low + gap, low, high)[0]
+
+    third = 0.25 / 3.0
+    assert push(third) == pytest.approx(20.0 * 2.0 * third, rel=1e-9)
+    assert push(third - 0.01) - push(third) == pytest.approx(20.0 * 11.0 * 0.01, rel=1e-9)
+    assert push(third + 0.01) - push(third) == pytest.approx(-20.0 * 0.01, rel=1e-9)
+    assert ranged(high - 0.02, low, high)[0] == pytest.approx(-push(0.02), rel=1e-12)
+
+
 def test_range_field_of_an_endless_joint_is_nothing():
     ends = np.array([np.inf])
     assert ranged(np.array([50.0]), -ends, ends)[0] == 0.0

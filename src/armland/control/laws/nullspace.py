@@ -13,6 +13,10 @@ from armland.records import Record
 from armland.rotations import Array
 
 
+WALL_FROM, WALL = 2.0 / 3.0, 10.0
+"""Share of the margin to a joint's end from which on the push grows faster, and by how many times."""
+
+
 @njit(cache=True)
 def elbow_field(axis: Array, anchor: Array, elbow: int, pull: float, tau: Array) -> None:
     """Add the joint torques of a force `pull` downwards at the elbow, the anchor of joint `elbow`, to `tau` (n,), N·m.
@@ -46,9 +50,15 @@ def range_field(q: Array, low: Array, high: Array, margin: float, stiffness: flo
     """
     for i in range(q.shape[0]):
         if q[i] < low[i] + margin:
-            tau[i] += stiffness * (low[i] + margin - q[i])
+            tau[i] += _push(low[i] + margin - q[i], margin, stiffness)
         elif q[i] > high[i] - margin:
-            tau[i] += stiffness * (high[i] - margin - q[i])
+            tau[i] -= _push(q[i] - high[i] + margin, margin, stiffness)
+
+
+@njit(cache=True)
+def _push(depth: float, margin: float, stiffness: float) -> float:
+    # A joint whose friction or whose haste takes it close meets a wall before the supervisor has to stop the arm.
+    return stiffness * depth + WALL * stiffness * max(depth - WALL_FROM * margin, 0.0)
 
 
 @njit(cache=True)
