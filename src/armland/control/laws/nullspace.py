@@ -12,7 +12,6 @@ from numba import njit
 from armland.records import Record
 from armland.rotations import Array
 
-
 WALL_FROM, WALL = 2.0 / 3.0, 10.0
 """Share of the margin to a joint's end from which on the push grows faster, and by how many times."""
 
