@@ -29,6 +29,9 @@ FREQUENCIES_HZ = (0.3, 0.5, 0.7, 1.0, 1.4, 2.0)
 SWING_M = 0.006
 """Amplitude of a free mass under the gusts: large against the camera's noise, small against what it sees."""
 
+SWINGS = (1.0, 0.5, 0.25)
+"""Shares of it: the first at which the mission goes on tracking. What is missed does not depend on the width."""
+
 SETTLE_S, PERIODS = 2.5, 3  # What is waited for before, and how many periods are fitted
 
 
@@ -69,22 +72,31 @@ def intercept(
 
 
 def _follow(run: Run, start: Snapshot, frequency: float) -> Tracked:
-    run.restore(start)
     rate, omega, track = run.rate, 2.0 * np.pi * frequency, run.plan.scenario.control.approach.track_rad_s
-    swing, span = flyer(run.plan.scenario).mass * SWING_M * omega**2, round(PERIODS / frequency * rate)
-    plate, arm, gust = [], [], run.simulator.world["told"]["rotors"]["force"]
-    for k in range(round(SETTLE_S * rate) + span):
-        gust[0, 0] = swing * np.sin(omega * k / rate) * min(k / rate / SETTLE_S, 1.0)
-        run.step()
-        plate.append(run.tick.truth["r"][0, 0])
-        arm.append(run.tick.truth["ee"][0, 0])
-    if run.controller.phase != "align":
+    for share in SWINGS:
+        plate, arm = _swung(run, start, frequency, share * SWING_M)
+        if run.controller.phase == "align":
+            break
+    else:
         raise PlantError(f"a gust of {frequency:g} Hz brought the mission from tracking to {run.controller.phase!r}")
-    seen, apart = np.array(plate[-span:]), np.array(plate[-span:]) - np.array(arm[-span:])
-    amplitude = _amplitude(seen, omega / rate)
+    apart, amplitude = plate - arm, _amplitude(plate, omega / rate)
     missed = _amplitude(apart, omega / rate) / amplitude
     bounds = limits(run.plan.arm, run.plan.home, run.plan.scenario, omega, missed)
     return Tracked(frequency, amplitude, missed, omega**2 / (omega**2 + track**2), bounds)
+
+
+def _swung(run: Run, start: Snapshot, frequency: float, swing: float) -> tuple[Array, Array]:
+    # Plate and end effector along x, m, over the last periods of a swing about as wide as `swing`, m.
+    run.restore(start)
+    rate, omega = run.rate, 2.0 * np.pi * frequency
+    force, span = flyer(run.plan.scenario).mass * swing * omega**2, round(PERIODS / frequency * rate)
+    plate, arm, gust = [], [], run.simulator.world["told"]["rotors"]["force"]
+    for k in range(round(SETTLE_S * rate) + span):
+        gust[0, 0] = force * np.sin(omega * k / rate) * min(k / rate / SETTLE_S, 1.0)
+        run.step()
+        plate.append(run.tick.truth["r"][0, 0])
+        arm.append(run.tick.truth["ee"][0, 0])
+    return np.array(plate[-span:]), np.array(arm[-span:])
 
 
 def _amplitude(y: Array, step: float) -> float:
