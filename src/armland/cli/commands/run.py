@@ -96,10 +96,10 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
 
     hinged = mission_named(mission).start == "hinged"
     name = given["scenario"] or ("paper" if hinged else "landing")
-    loaded = options.load(name, given, hinged)
+    loaded = options.load(name, given)
     if not hinged and "deviation.level" not in loaded.own:
         # What all sources give, unless the user says otherwise: a demonstrator differs from what is believed of it. The log says so.
-        loaded = options.load(name, {**given, "deviation": "published"}, hinged)
+        loaded = options.load(name, {**given, "deviation": "published"})
     tell_arm(loaded, diagnostics())
     tell_uav(loaded, diagnostics())
     console = ready()

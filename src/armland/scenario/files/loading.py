@@ -125,8 +125,8 @@ def _framed(below: dict[str, Any], frame: Any, data: dict[str, Any], path: Path,
 
 def _lay(below: dict[str, Any], layer: dict[str, Any]) -> None:
     # Put `layer` on the tables `below`. What was said of an arm, and where it stands, says nothing of another one.
-    arm, before = (x.get("arm") if isinstance(x.get("arm"), dict) else {} for x in (layer, below))
-    if arm and "file" in arm and arm["file"] != before.get("file"):
+    arm, before = layer.get("arm"), below.get("arm")
+    if isinstance(arm, dict) and isinstance(before, dict) and arm.get("file", before.get("file")) != before.get("file"):
         below["arm"] = {}
         for table, key in (("place", "home_deg"), ("trajectory", "start_m")):
             if isinstance(below.get(table), dict):
