@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from armland.plant.scene.uav import PLAY, PLAY_NPM
+from armland.plant.scene.uav import PLAY, play_stop
 from armland.plant.simulator import Simulator
 
 HOME = np.deg2rad([-4.72, -109.96, -7.94, -71.39, 11.82, 39.34, -7.2])
@@ -140,10 +140,10 @@ def test_plate_moves_freely_over_the_play_and_no_farther(made):
         mujoco.mj_step(m, d, nstep=2000)
         return float(d.joint(PLAY).qpos[0])
 
-    weight = 9.81 * float(m.body_mass[plate])
-    assert rests(0.0) == pytest.approx(-2e-4 - weight / PLAY_NPM, abs=1e-8)
-    assert rests(weight + 1.0) == pytest.approx(2e-4 + 1.0 / PLAY_NPM, abs=1e-7)
-    assert rests(weight + 2.0) == pytest.approx(2e-4 + 2.0 / PLAY_NPM, abs=1e-7)
+    weight, stiff = 9.81 * float(m.body_mass[plate]), play_stop(float(m.body_mass[sim.scene.uav_body]))[0]
+    assert rests(0.0) == pytest.approx(-2e-4 - weight / stiff, abs=1e-8)
+    assert rests(weight + 1.0) == pytest.approx(2e-4 + 1.0 / stiff, abs=1e-7)
+    assert rests(weight + 2.0) == pytest.approx(2e-4 + 2.0 / stiff, abs=1e-7)
 
 
 def test_cradle_stands_beside_and_turned_and_the_uav_on_it_with_it(made):

@@ -35,9 +35,9 @@ PLAY = f"{UAV}play"
 LEAST_PLAY_M = 1e-9
 """A range of no width is none to MuJoCo."""
 
-PLAY_NPM, PLAY_NSPM, PLAY_R = 5e4, 20.0, 20.0
-"""Both ends of the play, N/m and N·s/m: the hull behind the hinge gives way by 0.1 mm under the AR.Drone's weight, assumption;
-and R of `set_stops`, 1/kg, between the inverse masses of a UAV on a plate that is held and of a plate alone."""
+PLAY_HZ, PLAY_DAMPING = 32.0, 0.75
+"""Both ends of the play: frequency at which the UAV swings on its hull behind the hinge, and the share of critical damping. Light
+frames bend at 30 to 100 Hz; assumption."""
 
 STOP_R = 2000.0
 """rad/s² per N·m, see `set_stops`."""
@@ -113,7 +113,7 @@ def set_stops(model: mujoco.MjModel, hinge: Hinge) -> None:
     "Solver parameters".
     """
     stops = {f"{UAV}{name}": (hinge.stop_nm, hinge.stop_nms, STOP_R) for name in ("hinge_x", "hinge_y")}
-    stops |= {PLAY: (PLAY_NPM, PLAY_NSPM, PLAY_R)}
+    stops |= {PLAY: play_stop(float(model.body_mass[model.body(f"{UAV}uav").id]))}
     for name, (k, c, ratio) in stops.items():
         joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
         if joint < 0:
@@ -123,6 +123,15 @@ def set_stops(model: mujoco.MjModel, hinge: Hinge) -> None:
         # What MuJoCo is given it divides by d² and d, and multiplies the former by d again.
         model.jnt_solref[joint] = [-k * ratio * d, -c * ratio * d]
         model.jnt_solimp[joint] = [d, d, 0.001, 0.5, 2.0]
+
+
+def play_stop(mass: float) -> tuple[float, float, float]:
+    """Stiffness N/m, damping N·s/m and R of `set_stops`, 1/kg, of both ends of the play, for a UAV of `mass`, kg.
+
+    R lies between the inverse masses of a UAV on a plate that is held and of a plate alone.
+    """
+    omega = 2.0 * np.pi * PLAY_HZ
+    return mass * omega**2, 2.0 * PLAY_DAMPING * mass * omega, 2.0 / mass
 
 
 def _add_hinge_joint(body: mujoco.MjsBody, name: str, pos: Array, hinge: Hinge, degree: bool) -> None:
