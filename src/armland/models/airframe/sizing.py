@@ -24,6 +24,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from armland.models.airframe.file import foreign_of
 from armland.models.parameters import rotor_set, uav_parameters
 from armland.scenario import Scenario
 from armland.scenario.tables import update
@@ -32,11 +33,17 @@ MASS_KG, LAG_S, RADIUS_M, RATE_HZ, RATING_N = 0.48, 0.05, 0.1, 200, 177.0
 INERTIA = np.array([0.006, 0.007, 0.012])
 LEVER_M, REACH_M = np.array([0.0, 0.0, -0.06]), float(np.hypot(0.127, 0.127))
 
-BUILT = ("uav", "rotors", "link", "hinge", "plate", "magnet", "cradle")
+BUILT = ("uav", "rotors", "link", "hinge", "plate", "magnet", "cradle", "sensors", "imperfections")
 """Sections of what is built, which follow from what the UAV is; all others follow from what is believed of it."""
 
 FELT = 0.25
 """Least ratio of what has to be felt beside the arm's own motion: 0.3 N of contact, 0.2 N of pull."""
+
+CALM, CALM_S = "estimation.contact.calm_s", 0.025
+"""Key, and the time constant, s, at `FELT`: an arm that rests on the cradle makes 0.15 N of jitter, most of it above 15 Hz."""
+
+PADS_M, BEYOND_M = 0.015, 0.007
+"""Of the AR.Drone's magnet: radius of the circle of pads, and by how much the plate's exceeds it."""
 
 FASTEST = 2.0
 """Largest bandwidth over rate of samples, in terms of the AR.Drone's: eleven samples within 1/ω are left, where it has eleven at 1."""
@@ -83,6 +90,20 @@ def _felt(s: Size) -> float:
     return max(s.mass, FELT)
 
 
+def _lighter(s: Size) -> float:
+    return min(s.mass, 1.0)
+
+
+def _pads(s: Size) -> float:
+    return min(s.rating**0.25, 1.0)
+
+
+def _plate(s: Size) -> float:
+    # 7 mm beyond the circle of pads, whatever its size.
+    pads = _pads(s)
+    return 1.0 if pads == 1.0 else (PADS_M * pads + BEYOND_M) / (PADS_M + BEYOND_M)
+
+
 def _stiffness(s: Size) -> tuple[float, ...]:
     return tuple(j * s.bandwidth**2 for j in s.inertia)
 
@@ -92,6 +113,8 @@ def _damping(s: Size) -> tuple[float, ...]:
 
 
 WEIGHT = "grows with the weight"
+
+RANGE = "a lighter UAV asks for a force-torque sensor of a smaller range"
 
 RULES = (
     Rule("uav.drag_nspm", _weight, "quadrotors of all sizes lose 0.4 to 0.5 of their speed a second"),
@@ -112,7 +135,11 @@ RULES = (
     Rule("control.thrust.rate_nps", _weight, "the ramp takes as long"),
     Rule("control.thrust.slack_n", _weight, WEIGHT),
     Rule("control.thrust.floor_n", _weight, WEIGHT),
-    Rule("control.approach.give_way_mpns", lambda s: 1.0 / s.mass, "gives way to a share of the weight"),
+    Rule(
+        "control.approach.give_way_mpns",
+        lambda s: min(1.0 / s.mass, 1.0),
+        "gives way to a share of the weight, and no faster than the arm follows without swinging",
+    ),
     Rule(
         "control.approach.give_way_max_m",
         lambda s: max(s.lever, 1.0),
@@ -133,7 +160,7 @@ RULES = (
     Rule("bounds.thrust_left_n", _weight, WEIGHT),
     Rule("limits.carried_n", _weight, WEIGHT),
     Rule("limits.impact_n", _weight, WEIGHT),
-    Rule("limits.unexplained_n", _weight, WEIGHT),
+    Rule("limits.unexplained_n", _felt, WEIGHT),
     Rule("limits.load_gone_n", _weight, WEIGHT),
     Rule("limits.shortfall_n", _weight, WEIGHT),
     Rule("limits.stuck_n", _weight, WEIGHT),
@@ -143,14 +170,20 @@ RULES = (
     Rule("hinge.damping_nms", _weight, WEIGHT),
     Rule(
         "magnet.rating_n",
-        lambda s: s.mass**0.5,
+        lambda s: min(s.mass, s.mass**0.5),
         "34 times the AR.Drone's weight is more than it needs: 7 times is left at 10 kg, 5 at 25 kg, for peaks of 1.5 times",
     ),
+    Rule("magnet.pad_radius_m", _pads, "a weaker magnet is smaller"),
+    Rule("plate.radius_m", _plate, "covers the pads up to an offset of 7 mm"),
     Rule("plate.thickness_m", lambda s: s.rating**0.5, "the flux of a stronger magnet needs a thicker plate"),
     Rule("magnet.residual_n", lambda s: s.rating, "a share of the rating"),
     Rule("cradle.stiffness_npm", _weight, "sinks as far"),
     Rule("cradle.damping_nspm", _weight, "sinks as far"),
     Rule("cradle.mass_kg", _weight, "stiff enough for what it bears"),
+    Rule("sensors.force_n", _lighter, RANGE),
+    Rule("sensors.torque_nm", _lighter, RANGE),
+    Rule("imperfections.force_bias_n", _lighter, RANGE),
+    Rule("imperfections.torque_bias_nm", _lighter, RANGE),
 )
 """In the order in which they are applied: later ones may follow from earlier ones."""
 
@@ -192,15 +225,34 @@ def sized(scenario: Scenario) -> Scenario:
     """
     if scenario.sized:
         return scenario
+    scenario = scenario.resolved(_told(scenario))
     for group in (("rotors.radius_m", "magnet.rating_n"), tuple(rule.key for rule in RULES)):
         done = {rule.key for rule in RULES} - set(group) if len(group) == 2 else {"rotors.radius_m", "magnet.rating_n"}
         scenario = scenario.resolved(_changes(scenario, [r for r in RULES if r.key not in done]))
     return scenario
 
 
+def said(scenario: Scenario) -> dict[str, float]:
+    """What the UAV's file says of its rotors, by dotted key, where the user sets nothing else."""
+    told = foreign_of(scenario)
+    found = {} if told is None else {"max_thrust_n": told.high, "min_thrust_n": told.low, "drag_torque_m": told.drag_torque}
+    named = {f"rotors.{name}": value for name, value in found.items() if value is not None}
+    return {key: value for key, value in named.items() if not is_settled(scenario, key)}
+
+
+def _told(scenario: Scenario) -> dict[str, Any]:
+    out = dict[str, Any]()
+    for key, value in said(scenario).items():
+        update(out, nested(key, value))
+    return out
+
+
 def _changes(scenario: Scenario, rules: list[Rule]) -> dict[str, Any]:
     real, believed, out = size_of(scenario), size_of(scenario.believed()), dict[str, Any]()
+    of_file = said(scenario)
     for rule in rules:
+        if rule.key in of_file:
+            continue
         factor = rule.factor(real if rule.key.partition(".")[0] in BUILT else believed)
         if is_settled(scenario, rule.key) or np.all(np.equal(factor, 1.0)):
             continue
@@ -209,9 +261,16 @@ def _changes(scenario: Scenario, rules: list[Rule]) -> dict[str, Any]:
             [v * f for v, f in zip(value, factor, strict=True)] if isinstance(factor, tuple) else _times(value, factor)
         )
         update(out, nested(rule.key, made))
+    if believed.mass < FELT and not is_settled(scenario, CALM):
+        # What the arm's jitter makes does not shrink with the UAV; it averages out.
+        update(out, nested(CALM, CALM_S * FELT / believed.mass))
     if abs(real.lower) > 1e-6 and not is_settled(scenario, "skids.z_m"):
         # The UAV stands on its skids with the plate as far above the ground as the AR.Drone's.
         update(out, {"skids": {"z_m": scenario.skids.z_m - real.lower}})
+    if abs(real.lower) > 1e-6 and not is_settled(scenario, "camera.marker_m"):
+        # So does the camera see the marker at the same distance.
+        x, y, z = scenario.camera.marker_m
+        update(out, {"camera": {"marker_m": [x, y, z - real.lower]}})
     return out
 
 

@@ -122,7 +122,7 @@ def _robot(root: ET.Element) -> ET.Element:
 
 def _compiled(root: ET.Element, path: Path, what: str) -> tuple[mujoco.MjModel, dict[str, str]]:
     try:
-        spec = _parsed(root)
+        spec = parsed(root)
         spec.modelfiledir = str(path.parent)
         complaints = _drop_meshes(spec, path)
         c = spec.compiler
@@ -136,7 +136,12 @@ def _compiled(root: ET.Element, path: Path, what: str) -> tuple[mujoco.MjModel, 
         raise ModelError(f"{what} cannot be read: {' '.join(str(e).split())}") from e
 
 
-def _parsed(root: ET.Element) -> mujoco.MjSpec:
+def parsed(root: ET.Element) -> mujoco.MjSpec:
+    """The spec of an MJCF's `root`, without the attributes that this version of MuJoCo does not know.
+
+    Raises:
+        ValueError: what MuJoCo complains of besides.
+    """
     # Versions of MuJoCo differ in what they know; what this one does not is left behind.
     for _ in range(50):
         try:
