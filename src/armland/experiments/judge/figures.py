@@ -13,7 +13,10 @@ from armland.experiments.judge.whereabouts import least, tilt_deg
 
 Figures = dict[str, Any]
 
-CRADLE_N, CRADLE_SHARE = 0.2, 0.04  # Force on the rails that counts as a touchdown, or share of the weight where that is less
+CRADLE_N, CRADLE_SHARE = (
+    0.2,
+    0.04,
+)  # Force on the rails that counts as a touchdown, or share of the weight where that is less
 APART_S = 0.5  # Pads that touch again within this time bounce: it is the same capture
 DROP_S = 2.0  # For how long after the release the pivot's lowest point is looked for
 

@@ -12,8 +12,8 @@ the first peak of a damped oscillator. The skids' friction holds the pivot where
 S = F |(Λ_xz, Λ_yz)|/Λ_zz.
 
 Afterwards the arm gives way by the rate g, m/(s·N), times the hinge's force. It is led by a double pole at ω and rests on a spring k:
-s³ + 2ω s² + (ω² + k/Λ) s + g k ω² = 0, by Hurwitz stable where g < 2/(Λ ω) + 2ω/k. Downwards k is the buffers'; sideways, where the skids
-stick to the rails, it is beyond bounds.
+s³ + 2ω s² + (ω² + k/Λ) s + g k ω² = 0, by Hurwitz stable where g < 2/(Λ ω) + 2ω/k. Downwards k is that of the buffers; sideways,
+where the skids stick to the rails, it is beyond bounds.
 """
 
 from typing import NamedTuple

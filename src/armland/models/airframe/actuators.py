@@ -12,8 +12,8 @@ import mujoco
 import numpy as np
 
 from armland.errors import ModelError
-from armland.models.arm_file.formats.mjcf import parsed
-from armland.models.arm_file.formats.text import numbers, read_root
+from armland.models.arm_file.formats.mjcf import NO_PART, parsed
+from armland.models.arm_file.formats.text import included, numbers, read_root
 from armland.rotations import Array
 
 
@@ -35,8 +35,12 @@ def pushes_of(path: Path) -> list[Push]:
     """
     what = f"UAV file {str(path)!r}"
     root = read_root(path, what)
-    if root.tag != "mujoco" or root.find("actuator") is None:
+    if root.tag != "mujoco":
         return []
+    root = included(root, path, what)
+    for parent in list(root.iter()):
+        for child in [c for c in parent if c.tag in NO_PART]:
+            parent.remove(child)
     out = []
     for a in _spec(root, what).actuators:
         if a.trntype != mujoco.mjtTrn.mjTRN_SITE:
@@ -47,7 +51,9 @@ def pushes_of(path: Path) -> list[Push]:
         most = np.array(a.forcerange, float)
         if most.any():
             asked = tuple(np.sort(most)) if asked is None else (max(asked[0], most[0]), min(asked[1], most[1]))
-        out.append(Push(a.name, a.target, gear[:3], gear[3:], None if asked is None else (float(asked[0]), float(asked[1]))))
+        out.append(
+            Push(a.name, a.target, gear[:3], gear[3:], None if asked is None else (float(asked[0]), float(asked[1])))
+        )
     return out
 
 
@@ -65,6 +71,19 @@ def urdf_places(path: Path) -> dict[str, Array]:
             at = numbers(origin.get("xyz"), 3, (0.0, 0.0, 0.0), f"{what}: link {link.get('name')!r}: origin")
             out[link.get("name") or ""] = np.array(at)
     return out
+
+
+def urdf_properties(path: Path) -> dict[str, float]:
+    """The attributes of `<properties>`, by which gym-pybullet-drones and its kin describe a multirotor: `thrust2weight`, `km`, `kf` ...
+
+    Raises:
+        ModelError: the file is no XML, or an attribute is no number.
+    """
+    what = f"UAV file {str(path)!r}"
+    root = read_root(path, what)
+    found = root.find("properties") if root.tag == "robot" else None
+    given = {} if found is None else found.attrib
+    return {name: numbers(text, 1, (0.0,), f"{what}: properties: {name}")[0] for name, text in given.items()}
 
 
 def _spec(root: ET.Element, what: str) -> mujoco.MjSpec:

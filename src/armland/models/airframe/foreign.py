@@ -6,12 +6,9 @@
 | mass, inertia, centre of mass | it and all bodies on it, joints at zero; the centre of mass is the site `cm`, where there is one |
 | pivot | the site `pivot`; else by rule, the paper's lever, shorter where the rotors sit closer |
 | rotors | actuators at sites; else sites or bodies called rotor, thrust, motor or prop, and a number |
-| thrust limits, reaction torque, spin | actuators at sites; else nothing |
-
-A rotor that is a body stands where its mass is: URDFs often leave the joint at the origin and place the inertia alone.
+| thrust limits, reaction torque, spin | actuators at sites; of a URDF the `<properties>` of gym-pybullet-drones, where it has them |
 """
 
-import re
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -19,20 +16,12 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.errors import ModelError
-from armland.models.airframe.actuators import Push, pushes_of, urdf_places
+from armland.models.airframe.actuators import Push, pushes_of, urdf_places, urdf_properties
+from armland.models.airframe.found_rotors import CALLED, FEWEST, of_actuators, of_names, with_properties
 from armland.models.arm_file.inertia import lumped, tensor
 from armland.models.arm_file.reading import read_tree
 from armland.models.arm_file.tree import Inertial, Pose, Tree, here
-from armland.rotations import Array, matrix
-
-CALLED = re.compile(r"(?:.*[/_\-.])?(rotor|thrust|thruster|motor|prop|propeller)s?[_\-]?(\d+)(?:[_\-]?link)?", re.IGNORECASE)
-"""Names of rotors: the kind, and its number."""
-
-KINDS = ("rotor", "thrust", "thruster", "motor", "prop", "propeller")
-"""In the order in which they are believed, where a file has several."""
-
-FEWEST = 3
-"""Rotors below which names are taken for a coincidence."""
+from armland.rotations import Array
 
 LEVER_M, REACH_M = 0.06, 0.1796
 """Of the AR.Drone: centre of mass to pivot, and to the rotors."""
@@ -61,15 +50,6 @@ class Foreign(NamedTuple):
         return np.array([0.0, 0.0, -LEVER_M * min(1.0, reach / REACH_M)])
 
 
-class _Rotor(NamedTuple):
-    """A frame that may be a rotor, of the body that flies."""
-
-    kind: str
-    number: int
-    pose: Pose
-    is_site: bool
-
-
 def read_foreign(path: Path) -> Foreign:
     """What the file at `path` says.
 
@@ -93,7 +73,9 @@ def _read(path: Path, changed: int) -> Foreign:
         raise ModelError(f"{tree.what}: its body {tree.bodies[root].name!r} has no mass; give it an <inertial>")
     sites = {f.name: poses[f.body].then(f.pose) for f in tree.frames if f.body in poses}
     cm = sites["cm"].pos if "cm" in sites else whole.pos
-    rotors = _of_pushes(pushes, sites, cm, tree.what) or _of_names(tree, poses, placed, cm)
+    rotors = of_actuators(pushes, sites, cm, tree.what) or of_names(tree, poses, placed, cm)
+    if rotors is not None:
+        rotors = with_properties(rotors, urdf_properties(path), whole.mass)
     return Foreign(
         tree.bodies[root].name,
         whole.mass,
@@ -137,54 +119,3 @@ def _about(i: Inertial, point: Array) -> Array:
     # Inertia (3, 3), kg·m², about `point` (3,), m, body axes.
     d = i.pos - point
     return tensor(i) + i.mass * (d @ d * np.eye(3) - np.outer(d, d))
-
-
-def _of_pushes(pushes: list[Push], sites: dict[str, Pose], cm: Array, what: str) -> tuple | None:
-    # Place, axis, spin, reaction torque, least and largest thrust, of actuators at sites of which each pushes at a place of its own.
-    found = [p for p in pushes if p.site in sites and np.linalg.norm(p.force) > 0.0]
-    if len({p.site for p in found}) < FEWEST:
-        return None
-    size = [float(np.linalg.norm(p.force)) for p in found]
-    place = np.array([sites[p.site].pos - cm for p in found])
-    axis = np.array([matrix(sites[p.site].quat) @ p.force / s for p, s in zip(found, size, strict=True)])
-    torque = np.array([p.torque @ p.force / s**2 for p, s in zip(found, size, strict=True)])
-    drag = float(np.abs(torque).mean())
-    spin = -np.sign(torque) if torque.all() else None
-    limits = []
-    for end in range(2):
-        ends = [None if p.range is None else p.range[end] * s for p, s in zip(found, size, strict=True)]
-        known = [e for e in ends if e is not None]
-        if known and not np.allclose(known, known[0], rtol=0.01, atol=1e-9):
-            raise ModelError(
-                f"{what}: its rotors are not alike: thrusts up to {', '.join(f'{e:g}' for e in known)} N; armland flies rotors of one kind"
-            )
-        limits.append(known[0] if len(known) == len(ends) else None)
-    return place, axis, spin, drag or None, limits[0], limits[1] or None
-
-
-def _of_names(tree: Tree, poses: dict[int, Pose], placed: dict[str, Array], cm: Array) -> tuple | None:
-    # Likewise place and axis of sites and bodies by their names; a file says no more of them.
-    bodies, found = {b.name for b in tree.bodies}, list[_Rotor]()
-    for f in tree.frames:
-        match = CALLED.fullmatch(f.name)
-        if match is None or f.body not in poses:
-            continue
-        own, inertial = f.name in bodies, tree.bodies[f.body].inertial
-        shift = inertial.pos if own and inertial is not None else placed.get(f.name, np.zeros(3)) if own else np.zeros(3)
-        pose = poses[f.body].then(f.pose)
-        at = Pose(pose.pos + matrix(pose.quat) @ shift, pose.quat)
-        found.append(_Rotor(match.group(1).lower(), int(match.group(2)), at, not own))
-    for is_site in (True, False):
-        for kind in KINDS:
-            family = {r.number: r.pose for r in reversed(found) if r.kind == kind and r.is_site is is_site}
-            if len(family) >= FEWEST:
-                numbers = sorted(family)
-                gap = sorted(set(range(numbers[0], numbers[-1])) - set(numbers))
-                if gap or numbers[0] > 1:
-                    raise ModelError(
-                        f"{tree.what} has the rotors {kind} {', '.join(map(str, numbers))}; it lacks "
-                        f"{', '.join(map(str, gap or range(1, numbers[0])))}: number them from 1 on"
-                    )
-                at = [family[n] for n in numbers]
-                return np.array([p.pos - cm for p in at]), np.array([matrix(p.quat)[:, 2] for p in at]), None, None, None, None
-    return None

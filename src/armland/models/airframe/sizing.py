@@ -1,16 +1,5 @@
 """What follows from a UAV's size where the user sets nothing: rules from the AR.Drone 2.0 on the LWR, which was tried, to any other.
 
-| symbol | name | AR.Drone |
-|---|---|---|
-| m | mass without plate and extra load | 0.48 kg |
-| J_i | inertia about each body axis | 0.006, 0.007, 0.012 kg·m² |
-| J_p | larger inertia about the pivot, J + m ρ² | 0.0087 kg·m² |
-| r | mean distance of the rotors from the middle axis | 0.180 m |
-| τ | rotor lag | 0.05 s |
-| n | number of rotors | 4 |
-| R | radius of a rotor | 0.1 m |
-| ω | bandwidth of the attitude loop on board: the AR.Drone's times (τ₀/τ), and no faster than its sampling bears | |
-
 A rule is a ratio to the AR.Drone by which a value of the scenario is multiplied. So the AR.Drone keeps its values
 bit for bit, and a UAV that is
 the AR.Drone twice as heavy, with twice the inertia and twice the thrust, on a cradle with buffers twice as stiff, moves as the AR.Drone
@@ -25,13 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from armland.models.airframe.file import foreign_of
-from armland.models.parameters import rotor_set, uav_parameters
+from armland.models.airframe.size import Size, size_of
 from armland.scenario import Scenario
 from armland.scenario.tables import update
-
-MASS_KG, LAG_S, RADIUS_M, RATE_HZ, RATING_N = 0.48, 0.05, 0.1, 200, 177.0
-INERTIA = np.array([0.006, 0.007, 0.012])
-LEVER_M, REACH_M = np.array([0.0, 0.0, -0.06]), float(np.hypot(0.127, 0.127))
 
 BUILT = ("uav", "rotors", "link", "hinge", "plate", "magnet", "cradle", "sensors", "imperfections")
 """Sections of what is built, which follow from what the UAV is; all others follow from what is believed of it."""
@@ -45,33 +30,8 @@ CALM, CALM_S = "estimation.contact.calm_s", 0.025
 PADS_M, BEYOND_M = 0.015, 0.007
 """Of the AR.Drone's magnet: radius of the circle of pads, and by how much the plate's exceeds it."""
 
-FASTEST = 2.0
-"""Largest bandwidth over rate of samples, in terms of the AR.Drone's: eleven samples within 1/ω are left, where it has eleven at 1."""
-
-
-class Size(NamedTuple):
-    """Ratios of a UAV to the AR.Drone; exactly 1 where nothing differs."""
-
-    mass: float
-    inertia: tuple[float, float, float]
-    about_pivot: float
-    """J_p."""
-    reach: float
-    """r."""
-    number: float
-    """n."""
-    bandwidth: float
-    """ω."""
-    lag: float
-    """τ."""
-    radius: float
-    """R."""
-    rating: float
-    """Of the magnet."""
-    lever: float
-    """ρ, vertical."""
-    lower: float
-    """How much lower the pivot is, m: a difference and no ratio."""
+HOLDS = 0.15
+"""Least ratio of the magnet's rating, 27 N: the LWR pushes sideways with up to 1.6 N when it comes to rest on the cradle."""
 
 
 class Rule(NamedTuple):
@@ -170,12 +130,17 @@ RULES = (
     Rule("hinge.damping_nms", _weight, WEIGHT),
     Rule(
         "magnet.rating_n",
-        lambda s: min(s.mass, s.mass**0.5),
-        "34 times the AR.Drone's weight is more than it needs: 7 times is left at 10 kg, 5 at 25 kg, for peaks of 1.5 times",
+        lambda s: s.mass**0.5 if s.mass > 1.0 else max(s.mass, HOLDS),
+        "34 times the AR.Drone's weight is more than it needs: 7 times is left at 10 kg, 5 at 25 kg, for peaks of 1.5 times; a "
+        "lighter one's is in proportion, and never too weak for the arm's friction",
     ),
     Rule("magnet.pad_radius_m", _pads, "a weaker magnet is smaller"),
     Rule("plate.radius_m", _plate, "covers the pads up to an offset of 7 mm"),
-    Rule("plate.thickness_m", lambda s: s.rating**0.5, "the flux of a stronger magnet needs a thicker plate"),
+    Rule(
+        "plate.thickness_m",
+        lambda s: s.rating**0.5 if s.rating > 1.0 else s.rating,
+        "the flux of a stronger magnet needs a thicker plate; a smaller magnet has smaller poles",
+    ),
     Rule("magnet.residual_n", lambda s: s.rating, "a share of the rating"),
     Rule("cradle.stiffness_npm", _weight, "sinks as far"),
     Rule("cradle.damping_nspm", _weight, "sinks as far"),
@@ -186,34 +151,6 @@ RULES = (
     Rule("imperfections.torque_bias_nm", _lighter, RANGE),
 )
 """In the order in which they are applied: later ones may follow from earlier ones."""
-
-
-def size_of(scenario: Scenario) -> Size:
-    """Ratios of a scenario's UAV to the AR.Drone.
-
-    Raises:
-        ModelError: the UAV's file cannot be used.
-    """
-    body, rotors = uav_parameters(scenario), rotor_set(scenario)
-    mass = body.mass - scenario.uav.extra_mass_kg if scenario.uav.extra_mass_kg else body.mass
-    inertia = np.diag(body.inertia)
-    ratios = [_near(j) for j in inertia / INERTIA]
-    reach = float(np.hypot(rotors.place[:, 0], rotors.place[:, 1]).mean())
-    lag = scenario.rotors.time_constant_s / LAG_S
-    swung = _swung(inertia, mass, body.lever) / _swung(INERTIA, MASS_KG, LEVER_M)
-    return Size(
-        mass=_near(mass / MASS_KG),
-        inertia=(ratios[0], ratios[1], ratios[2]),
-        about_pivot=_near(swung),
-        reach=_near(reach / REACH_M),
-        number=rotors.number / 4,
-        bandwidth=min(_near(1.0 / lag), FASTEST * scenario.onboard.rate_hz / RATE_HZ),
-        lag=_near(lag),
-        radius=_near(scenario.rotors.radius_m / RADIUS_M),
-        rating=_near(scenario.magnet.rating_n / RATING_N),
-        lever=_near(body.lever[2] / LEVER_M[2]),
-        lower=float(LEVER_M[2] - body.lever[2]),
-    )
 
 
 def sized(scenario: Scenario) -> Scenario:
@@ -235,7 +172,9 @@ def sized(scenario: Scenario) -> Scenario:
 def said(scenario: Scenario) -> dict[str, float]:
     """What the UAV's file says of its rotors, by dotted key, where the user sets nothing else."""
     told = foreign_of(scenario)
-    found = {} if told is None else {"max_thrust_n": told.high, "min_thrust_n": told.low, "drag_torque_m": told.drag_torque}
+    found = (
+        {} if told is None else {"max_thrust_n": told.high, "min_thrust_n": told.low, "drag_torque_m": told.drag_torque}
+    )
     named = {f"rotors.{name}": value for name, value in found.items() if value is not None}
     return {key: value for key, value in named.items() if not is_settled(scenario, key)}
 
@@ -296,12 +235,3 @@ def nested(key: str, value: Any) -> dict[str, Any]:
 
 def _times(value: Any, factor: float) -> Any:
     return [v * factor for v in value] if isinstance(value, tuple) else value * factor
-
-
-def _near(ratio: float) -> float:
-    # What differs by rounding alone is the AR.Drone's.
-    return 1.0 if abs(ratio - 1.0) < 1e-9 else float(ratio)
-
-
-def _swung(inertia: np.ndarray, mass: float, lever: np.ndarray) -> float:
-    return float(max(inertia[0], inertia[1]) + mass * lever[2] ** 2)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from armland.models.airframe.sizing import size_of
+from armland.models.airframe.size import size_of
 from armland.plant.noise import stream
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -18,7 +18,7 @@ GROWS = {
     "wrench.drift_nps": "mass",
     "wrench.drift_nmps": "mass",
 }
-"""Ranges in metres and newtons that stand for the AR.Drone's parts: with which ratio of `models.airframe.sizing` smaller ones shrink."""
+"""Ranges in metres and newtons that stand for the AR.Drone's parts: with which ratio of `airframe.size` smaller ones shrink."""
 
 Values = dict[str, Array]
 """Deviations that are not zero, by `device.key`: arrays in the unit of the key, one number for each part that deviates by itself."""
