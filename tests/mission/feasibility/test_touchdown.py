@@ -8,6 +8,7 @@ from armland.errors import ConfigurationError
 from armland.experiments.episode import fly
 from armland.mission.feasibility.touchdown import LOWER_MPS, YIELDING, Blow, apparent_mass, gently, swinging, touchdown
 from armland.mission.plan import plan
+from armland.models.airframe.sizing import sized
 from armland.scenario import load_scenario
 
 
@@ -95,11 +96,11 @@ def test_rate_of_giving_way_is_where_the_arm_begins_to_swing(apparent, stiffness
 
 
 def test_arm_under_a_light_uav_gives_way_as_it_can_follow():
-    made = plan(load_scenario("landing", {"airframe": "crazyflie"}), "landing")
+    made = plan(sized(load_scenario("landing", {"airframe": "crazyflie"})), "landing")
     given, approach = made.scenario, made.scenario.control.approach
     limit = swinging(apparent_mass(made.arm), 4.0 * given.cradle.stiffness_npm, given.control.free_rad_s)
     assert approach.give_way_mpns <= YIELDING * limit
     # By its weight alone it would be drawn back faster than it can follow.
     assert limit < 3e-3 * 0.48 / 0.0379
     own = load_scenario("landing", {"airframe": "crazyflie", "control": {"approach": {"give_way_mpns": 0.02}}})
-    assert plan(own, "landing").scenario.control.approach.give_way_mpns == 0.02
+    assert plan(sized(own), "landing").scenario.control.approach.give_way_mpns == 0.02
