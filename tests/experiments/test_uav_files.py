@@ -4,11 +4,13 @@ from pathlib import Path
 
 import pytest
 
+from armland.cli.options import load
 from armland.errors import ModelError
 from armland.experiments.episode import fly, prepare
 from armland.scenario import load_scenario
 
-UAVS = Path(__file__).parents[1] / "data" / "uavs"
+DATA = Path(__file__).parents[1] / "data"
+ARMS, UAVS = DATA / "arms", DATA / "uavs"
 PUBLISHED = {"deviation": {"level": "published"}}
 
 
@@ -21,9 +23,23 @@ def test_lands(name, seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["ardrone2", "x500", "hexa10"])
+@pytest.mark.parametrize("name", ["ardrone2", "crazyflie", "pelican", "x500", "neo11", "m690", "hexa10"])
 def test_those_of_armland_land(name):
     result = fly(load_scenario("landing", {"airframe": name, **PUBLISHED}), "landing", 1).result
+    assert result["success"], result["reason"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["tilted20.toml", "octo5_tilted30.toml", "naki.toml", "motors.xml", "props.urdf"])
+def test_eight_and_tilted_rotors_and_other_peoples_files_land(name):
+    result = fly(load_scenario("landing", {"airframe": str(UAVS / name), **PUBLISHED}), "landing", 1).result
+    assert result["success"], result["reason"]
+
+
+@pytest.mark.slow
+def test_arm_of_its_class_lands_a_uav_of_25_kg():
+    given = {"uav": "octo25", "arm": str(ARMS / "heavy.xml"), "ee": None, "deviation": "published"}
+    result = fly(load("landing", given), "landing", 1).result
     assert result["success"], result["reason"]
 
 

@@ -241,3 +241,16 @@ def test_noise_of_the_force_sensor_leaves_its_gain_within_the_slopes_error(bench
     found = nodded(bench, 1.0, noise=0.05)
     assert (np.abs(found - 1.0) < 5.0 * error).all()
     assert (error < 0.01).all()
+
+
+def test_force_is_averaged_where_it_is_waited_for(bench):
+    """A step of force comes through with the time constant; jitter about it is left out; without one the force is taken as it is."""
+    known, force = bench.kept["estimate"]["calm"], np.array([1.0, -2.0, 3.0])
+    bench.m["wrench"] = reading(bench, force, np.zeros(3))
+    estimate_load(False, True, 0.0, bench.b)
+    np.testing.assert_array_equal(known, bench.e["hinge_force"])
+    known[:], bench.told["estimate"]["calm_gain"] = 0.0, 1.0 - np.exp(-0.01)
+    for k in range(300):
+        bench.m["wrench"] = reading(bench, force + 5.0 * np.sin(0.1 * 2.0 * np.pi * k), np.zeros(3))
+        estimate_load(False, True, 0.0, bench.b)
+    np.testing.assert_allclose(known[0], force * (1.0 - np.exp(-3.0)), atol=0.1)

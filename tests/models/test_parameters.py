@@ -45,9 +45,7 @@ def test_file_without_what_is_needed_is_refused_with_what_is_missing(scenario, t
     file.write_text(
         text.replace('name="rotor_3"', 'name="third"').replace('name="pivot"', 'name="p"'), encoding="utf-8"
     )
-    with pytest.raises(
-        ModelError, match=r"lacks pivot, rotor_3; it needs a body 'uav' and the sites cm, pivot and rotor_1"
-    ):
+    with pytest.raises(ModelError, match=r"has the rotors rotor 1, 2, 4; it lacks 3: number them from 1 on"):
         rotor_effect(scenario.replaced({"uav": {"file": str(file)}}))
 
 

@@ -135,7 +135,7 @@ def fill_signals(elapsed: float, b: Record) -> None:
         relative += (e.plate_v[i] - e.v[i]) ** 2
         arm += (refer.r[i] - e.r[i]) ** 2
         retreat += (e.r[i] - s.grip[i]) ** 2
-        force += e.hinge_force[i] ** 2
+        force += b.kept.estimate.calm[i] ** 2
     s.retreat = np.sqrt(retreat)
     out[S_PROGRESS], out[S_ELAPSED], out[S_SEEN] = refer.progress, elapsed, e.plate_valid
     out[S_UAV_ERROR], out[S_UAV_SPEED] = np.sqrt(apart), np.sqrt(speed)

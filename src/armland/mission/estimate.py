@@ -59,6 +59,7 @@ def told_layout() -> np.dtype:
             ("camera", "f8", (3,)),  # m, optical centre [E]
             ("slip", "f8"),  # m, offset of a held plate that counts as slipped off
             ("wrench_age", "i8"),  # ticks, of a force that is known
+            ("calm_gain", "f8"),  # of the hinge force's average, per tick; 1: none
             (
                 "tool_follows",
                 "f8",
@@ -104,6 +105,7 @@ def kept_layout(joints: int) -> np.dtype:
             ("sample", "i8"),  # the stamp of the newest one
             ("arrived", "i8"),  # tick at which that came
             ("weight", "f8"),  # N, of all that flies, as the force-torque sensor finds it
+            ("calm", "f8", (3,)),  # N, hinge force, averaged [D]
             ("filter", layouts.kept_layout()),
             ("plate", layouts.plate_layout()),
             ("wrench", wrench.kept_layout()),

@@ -56,6 +56,7 @@ def estimate_load(free: bool, magnet: bool, retreat: float, b: Record) -> None:
     for i in range(3):
         # A force that is not known gives way to nothing.
         e.hinge_force[i] = force[i] if known else 0.0
+        s.calm[i] = s.calm[i] + p.calm_gain * (e.hinge_force[i] - s.calm[i]) if p.calm_gain < 1.0 else e.hinge_force[i]
     if known and row.held and row.observe and p.learns and e.r[2] > b.told.decide.clear_z:
         weigh(force[2], e.thrust / max(b.kept.act.hover, 1e-3), p, s)
 

@@ -122,7 +122,8 @@ def _estimate(p: Records, t: Telling) -> None:
     p["rotor_gain"] = 1.0 if hinged else 1.0 - np.exp(-1.0 / (s.run.rate_hz * s.rotors.time_constant_s))
     p["drag"], p["camera"], p["slip"] = s.uav.drag_nspm, s.camera.position_m, s.limits.slip_m
     p["launch"] = 0.0 if t.launch is None else t.launch.velocity
-    p["wrench_age"] = t.ticks(s.limits.wrench_age_ms)
+    p["wrench_age"], calm_s = t.ticks(s.limits.wrench_age_ms), s.estimation.contact.calm_s
+    p["calm_gain"] = 1.0 - np.exp(-t.tick_s / calm_s) if calm_s > 0.0 else 1.0
     # The published laws take the reading as it is; (X.6) takes the tool's inertia force off by itself.
     p["tool_follows"] = 0.0 if hinged else 1.0
     p["onboard_kp"], p["onboard_kd"] = s.onboard.kp_nm, s.onboard.kd_nms

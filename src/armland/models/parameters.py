@@ -6,12 +6,12 @@ import mujoco
 import numpy as np
 
 from armland.errors import ModelError
-from armland.models.airframe.body import described
-from armland.models.airframe.rotor_set import LEAST_ROTORS, RotorSet, alternating, check_rotors, effect_of
+from armland.models.airframe.file import foreign_of, uav_file
+from armland.models.airframe.rotor_set import RotorSet, alternating, check_rotors, effect_of
 from armland.models.arm import ArmModel
 from armland.models.arm_file.reading import ArmFile, read_arm
 from armland.models.arm_file.table import Asked
-from armland.models.description import compile_spec, mark_end_effector, read_spec, resolve
+from armland.models.description import compile_spec, mark_end_effector, resolve
 from armland.models.uav import UavParameters
 from armland.rotations import Array, matrix
 from armland.scenario import Scenario
@@ -103,7 +103,7 @@ def rotor_set(scenario: Scenario) -> RotorSet:
     for name, given in (("axis", r.axis), ("spin", r.spin)):
         if given is not None and len(given) != len(place):
             raise ModelError(f"rotors.{name} has {len(given)} entries; the UAV has {len(place)} rotors")
-    spin = alternating(place) if r.spin is None else np.array(r.spin, float)
+    spin = np.array(r.spin, float) if r.spin is not None else _spin_of(scenario, place)
     found = RotorSet(place, axis, spin)
     check_rotors(found, r.drag_torque_m, scenario.uav.file)
     return found
@@ -119,27 +119,10 @@ def rotor_count(scenario: Scenario) -> int:
     return rotor_set(scenario).number
 
 
-def uav_file(scenario: Scenario) -> mujoco.MjSpec:
-    """The UAV's file: its body `uav`, the sites `cm` and `pivot` and one site for each rotor, from `rotor_1` on.
-
-    Raises:
-        ModelError: a file that cannot be used; the message names what it lacks.
-    """
-    if not scenario.uav.file:
-        return described(scenario.uav, scenario.rotors)
-    spec = read_spec(resolve(scenario.uav.file), "UAV file")
-    known = {s.name for s in spec.sites} | ({"uav"} & {b.name for b in spec.bodies})
-    names = ["uav", "cm", "pivot"]
-    if scenario.rotors.place_m is None:
-        numbers = [int(n) for n in (s.removeprefix("rotor_") for s in known if s.startswith("rotor_")) if n.isdecimal()]
-        names += [f"rotor_{i + 1}" for i in range(max([*numbers, LEAST_ROTORS if not numbers else 1]))]
-    missing = [name for name in names if name not in known]
-    if missing:
-        raise ModelError(
-            f"UAV file {scenario.uav.file!r} lacks {', '.join(missing)}; it needs a body 'uav' and the sites cm, pivot and rotor_1, "
-            "rotor_2 ... with their z axes along the thrust"
-        )
-    return spec
+def _spin_of(scenario: Scenario, place: Array) -> Array:
+    told = foreign_of(scenario)
+    known = told is not None and told.spin is not None and scenario.rotors.place_m is None
+    return np.array(told.spin) if told is not None and known else alternating(place)
 
 
 def _rotor_sites(model: mujoco.MjModel) -> list[str]:

@@ -56,6 +56,9 @@ class ContactDetection(Section):
     """Who carries the UAV, see `estimation.contact`."""
 
     share_s: of.PositiveSeconds = key(0.02, "time constant of the shares' low pass")
+    calm_s: of.Seconds = key(
+        0.0, "time constant in which the hinge force is averaged where it is waited for, or must be explained; 0: none"
+    )
     clearance_m: of.Gain = key(0.01, "retreat after which a magnet without force has surely let go")
     contact_n: Switching = key(Switching(on=1.2, off=0.6, on_s=0.004, off_s=0.10), "hinge force: contact")
     touchdown: Switching = key(

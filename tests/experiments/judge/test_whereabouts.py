@@ -69,3 +69,9 @@ def test_on_the_hinge_it_cannot_leave(ticks, brief):
 def test_arm_in_words(ticks, brief, brake, moved, words):
     ticks["command"]["brake"], ticks["truth"]["ee"][-50:, 0] = brake, 0.681 + moved
     assert words in in_words(ticks, brief)
+
+
+def test_light_uav_stands_with_a_force_that_is_a_share_of_its_weight(ticks, brief):
+    ticks["truth"]["cradle_force"][:, 2] *= 0.07
+    assert state_of(ticks, brief) != "standing"
+    assert state_of(ticks, brief._replace(weight=0.35)) == "standing"

@@ -6,8 +6,10 @@ from scipy.integrate import solve_ivp
 
 from armland.errors import ConfigurationError
 from armland.experiments.episode import fly
-from armland.mission.feasibility.touchdown import LOWER_MPS, Blow, apparent_mass, gently, touchdown
+from armland.mission.feasibility.touchdown import LOWER_MPS, YIELDING, Blow, apparent_mass, gently, swinging, touchdown
 from armland.mission.plan import plan
+from armland.models.airframe.sizing import sized
+from armland.scenario import load_scenario
 
 
 @pytest.fixture(scope="module")
@@ -75,3 +77,30 @@ def test_speed_that_is_set_is_taken_or_refused_with_what_would_do(landing_scenar
 def test_magnet_whose_shear_failed_at_the_usual_speed_lands(landing_scenario):
     weak = landing_scenario.replaced({"magnet": {"rating_n": 60.0}, "deviation": {"level": "published"}})
     assert fly(weak, "landing", 1).result["success"]
+
+
+@pytest.mark.parametrize(("apparent", "stiffness"), [(7.7, 4e4), (7.7, 2.5e3), (30.0, 4e4)])
+def test_rate_of_giving_way_is_where_the_arm_begins_to_swing(apparent, stiffness):
+    """The poles of an arm led by a double pole against a spring, its reference drawn back by the spring's force."""
+    pole, mass = 25.0, np.diag([0.1, 0.1, apparent])
+    limit = swinging(mass, stiffness, pole)
+    for share, swings in ((0.45, False), (0.99, False), (1.01, True)):
+        g = share * limit
+        poles = np.roots([1.0, 2.0 * pole, pole**2 + stiffness / apparent, g * stiffness * pole**2])
+        assert (poles.real.max() > 0.0) == swings
+    # Sideways the skids stick: a spring as stiff as you like.
+    stiff = np.roots(
+        [1.0, 2.0 * pole, pole**2 + 1e9 / apparent, 1e9 * pole**2 * swinging(apparent * np.eye(3), 1e9, pole)]
+    )
+    assert abs(stiff.real).min() < 1e-2
+
+
+def test_arm_under_a_light_uav_gives_way_as_it_can_follow():
+    made = plan(sized(load_scenario("landing", {"airframe": "crazyflie"})), "landing")
+    given, approach = made.scenario, made.scenario.control.approach
+    limit = swinging(apparent_mass(made.arm), 4.0 * given.cradle.stiffness_npm, given.control.free_rad_s)
+    assert approach.give_way_mpns <= YIELDING * limit
+    # By its weight alone it would be drawn back faster than it can follow.
+    assert limit < 3e-3 * 0.48 / 0.0379
+    own = load_scenario("landing", {"airframe": "crazyflie", "control": {"approach": {"give_way_mpns": 0.02}}})
+    assert plan(sized(own), "landing").scenario.control.approach.give_way_mpns == 0.02

@@ -85,3 +85,17 @@ def test_wind_blows_from_anywhere_in_the_plane():
     np.testing.assert_allclose(np.linalg.norm(ways, axis=1), 1.0)
     np.testing.assert_array_equal(ways[:, 2], 0.0)
     assert np.abs(ways.mean(axis=0)).max() < 5.0 * np.sqrt(0.5 / 200)
+
+
+def test_parts_of_a_smaller_uav_err_by_less_unless_the_user_says_how_much(published, numbers):
+    small = load_scenario("landing", {"airframe": "crazyflie", "deviation": {"level": "published"}})
+    reach = 0.03253 * np.sqrt(2.0) / (0.127 * np.sqrt(2.0))
+    made = drawn(small, JOINTS)
+    np.testing.assert_allclose(made["uav.cm_m"], reach * numbers["uav.cm_m"])
+    np.testing.assert_allclose(made["hinge.stiffness_nm"], 0.0379 / 0.48 * numbers["hinge.stiffness_nm"])
+    np.testing.assert_array_equal(made["uav.tilt_deg"], numbers["uav.tilt_deg"])
+    own = row_of(small, "uav.cm_m", {"low": -0.003, "high": 0.003})
+    np.testing.assert_allclose(drawn(own, JOINTS)["uav.cm_m"], numbers["uav.cm_m"])
+    # A larger one's err as the AR.Drone's.
+    large = load_scenario("landing", {"airframe": "hexa10", "deviation": {"level": "published"}})
+    np.testing.assert_array_equal(drawn(large, JOINTS)["uav.cm_m"], numbers["uav.cm_m"])

@@ -133,6 +133,12 @@ def test_fault_of_a_joint_that_is_not_there_is_refused(waiting):
         waiting(faults=[{"kind": "encoder_offset", "joint": 8}])
 
 
+def test_loss_of_a_rotor_that_is_not_there_is_refused(waiting):
+    with pytest.raises(ConfigurationError, match="rotor 5 does not exist; the UAV has rotors 1 to 4"):
+        waiting(faults=[{"kind": "rotor_loss", "rotor": 5}])
+    waiting(faults=[{"kind": "rotor_loss", "rotor": 4}])
+
+
 @pytest.mark.parametrize(
     "fault",
     [

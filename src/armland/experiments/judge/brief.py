@@ -46,6 +46,7 @@ class Brief(NamedTuple):
     hold: Hold | None  # None where the scene has no magnet
     screws: Screws  # Of the arm
     gravity: float  # m/s²
+    weight: float  # N, of all that flies, as the controller believes it
     solids: str  # MJCF, see `solids.solids_of`; empty where nothing can touch, or the log has none
     uav_cm: Array  # (3,) m, B: centre of mass in the UAV's body of `solids`
     put_down: Array  # (3,) m, D: where the pivot is when the UAV stands in the middle of the cradle
@@ -77,6 +78,7 @@ def brief_of(metadata: Mapping[str, str]) -> Brief:
             hold=Hold(**hold) if (hold := json.loads(metadata["hold"])) else None,
             screws=Screws(**json.loads(metadata["screws"])),
             gravity=float(metadata["gravity"]),
+            weight=float(metadata.get("weight", "inf")),
             solids=metadata.get("solids", ""),
             uav_cm=np.array(json.loads(metadata.get("uav_cm", "[0.0, 0.0, 0.0]"))),
             put_down=np.array(json.loads(metadata["put_down"])),
@@ -126,6 +128,7 @@ def metadata_of(scenario: Scenario, plan: Plan, scene: Scene) -> dict[str, str]:
         "hold": hold._asdict() if "magnet" in scene.parts else None,
         "screws": screws_of(scene)._asdict(),
         "gravity": float(np.linalg.norm(scenario.environment.gravity_mps2)),
+        "weight": plan.weight_n,
         "given": place.takeoff_velocity_mps if place.fly_on else (0.0, 0.0, 0.0),
         "criteria": [list(c) for c in mission.criteria],
         "timeouts": dict(mission.timeouts),

@@ -9,11 +9,14 @@ import numpy as np
 from armland.experiments.judge.brief import Brief, Ticks
 from armland.experiments.judge.limits import FALL_M
 from armland.experiments.judge.tracking import Metrics, measure
-from armland.experiments.judge.whereabouts import tilt_deg
+from armland.experiments.judge.whereabouts import least, tilt_deg
 
 Figures = dict[str, Any]
 
-CRADLE_N = 0.2  # Force on the rails that counts as a touchdown
+CRADLE_N, CRADLE_SHARE = (
+    0.2,
+    0.04,
+)  # Force on the rails that counts as a touchdown, or share of the weight where that is less
 APART_S = 0.5  # Pads that touch again within this time bounce: it is the same capture
 DROP_S = 2.0  # For how long after the release the pivot's lowest point is looked for
 
@@ -39,7 +42,7 @@ def touchdown(ticks: Ticks, brief: Brief) -> Figures:
     """State just before the rails first bore in a phase of the touchdown, and how far from the cradle's middle the UAV was placed."""
     truth = ticks["truth"]
     due = np.array([name in brief.on_cradle for name in brief.phases])[ticks["mission"]["phase"]]
-    touched = np.flatnonzero((truth["cradle_force"][:, 2] > CRADLE_N) & due)
+    touched = np.flatnonzero((truth["cradle_force"][:, 2] > least(CRADLE_N, CRADLE_SHARE, brief)) & due)
     if not len(touched):
         return dict.fromkeys(("speed_mps", "tilt_deg", "offset_m"))
     before = truth[max(touched[0] - 2, 0)]

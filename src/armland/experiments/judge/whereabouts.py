@@ -11,8 +11,9 @@ TOPPLED_DEG = 25.0  # Tilt beyond which a UAV in the air is out of control
 LEANING_DEG = 46.0  # Tilt of one that leans on both of the hinge's stops, 30 degrees each, a little askew
 FALL_MPS = 1.2  # Faster than this downwards is a fall: from 7 cm
 
-STILL_MPS, CARRIED_N, LOW_M = 0.05, 1.0, 0.6
-"""Speed of what rests; force on the rails of a UAV that stands; pivot height below which nothing flies."""
+STILL_MPS, CARRIED_N, CARRIED_SHARE, LOW_M = 0.05, 1.0, 0.2, 0.6
+"""Speed of what rests; force on the rails of a UAV that stands, or the share of its weight where that is less; pivot height below
+which nothing flies."""
 
 BALANCED_MPS = 0.3  # Speed up to which an arm moves a UAV that it holds: one that it balances in gusts
 
@@ -24,6 +25,11 @@ def tilt_deg(quat: Array) -> Array:
     return np.rad2deg(np.arccos(np.clip(1.0 - 2.0 * (quat[..., 1] ** 2 + quat[..., 2] ** 2), -1.0, 1.0)))
 
 
+def least(force: float, share: float, brief: Brief) -> float:
+    """`force`, N, or the `share` of the UAV's weight where that is less."""
+    return min(force, share * brief.weight)
+
+
 def state_of(ticks: Ticks, brief: Brief) -> str:
     """How the UAV ended: `flying`, `held`, `standing`, or, where it is none of these or fell before, `lost`."""
     truth = ticks["truth"]
@@ -33,7 +39,7 @@ def state_of(ticks: Ticks, brief: Brief) -> str:
         return "held" if tilt < TOPPLED_DEG else "lost"
     if truth["v"][:, 2].min() < -FALL_MPS:
         return "lost"
-    if speed < STILL_MPS and late["cradle_force"][:, 2].min() > CARRIED_N:
+    if speed < STILL_MPS and late["cradle_force"][:, 2].min() > least(CARRIED_N, CARRIED_SHARE, brief):
         return "standing"
     # One that has toppled over its hinge is not held, even where the magnet grips; least of all one that lies on the arm.
     toppled = late["foul"][:, 2].any() or tilt > LEANING_DEG
@@ -65,7 +71,7 @@ def _uav(ticks: Ticks, brief: Brief) -> str:
     if state == "held":
         return "the UAV is held by the arm"
     if state == "standing":
-        running = truth["rotor_thrust"][-1].sum() > 1.0
+        running = truth["rotor_thrust"][-1].sum() > least(CARRIED_N, CARRIED_SHARE, brief)
         return f"the UAV stands on the cradle, its rotors {'running' if running else 'stopped'}"
     return f"the UAV is lost: it {_fate(truth)}, and is now at ({x:.2f}, {y:.2f}, {z:.2f}) m"
 

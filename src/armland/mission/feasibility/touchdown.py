@@ -10,6 +10,10 @@
 The arm is what is stopped, its mass on the buffers' springs: F = v √(k Λ_zz) exp(−ζ arccos ζ/√(1 − ζ²)), ζ = c/(2 √(k Λ_zz)),
 the first peak of a damped oscillator. The skids' friction holds the pivot where it is, so what slows it down pushes it aside, too:
 S = F |(Λ_xz, Λ_yz)|/Λ_zz.
+
+Afterwards the arm gives way by the rate g, m/(s·N), times the hinge's force. It is led by a double pole at ω and rests on a spring k:
+s³ + 2ω s² + (ω² + k/Λ) s + g k ω² = 0, by Hurwitz stable where g < 2/(Λ ω) + 2ω/k. Downwards k is that of the buffers; sideways,
+where the skids stick to the rails, it is beyond bounds.
 """
 
 from typing import NamedTuple
@@ -17,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.errors import ConfigurationError
+from armland.models.airframe.sizing import is_settled
 from armland.models.arm import ArmModel
 from armland.models.posture import lead
 from armland.rotations import Array
@@ -29,6 +34,9 @@ LOWER_MPS = 0.03
 
 SHARE = 0.8
 """Of the speed that the magnet just bears, what is taken by rule: a plant that differs touches down a quarter harder."""
+
+YIELDING = 0.45
+"""Share of the rate at which giving way would swing: the AR.Drone on the LWR takes 0.43 of it."""
 
 
 class Blow(NamedTuple):
@@ -57,6 +65,18 @@ def touchdown(scenario: Scenario, apparent: Array) -> Blow:
     return Blow(float(pull), float(pull * np.hypot(apparent[0, 2], apparent[1, 2]) / mass))
 
 
+def swinging(apparent: Array, stiffness: float, pole: float) -> float:
+    """Rate of giving way, m/(s·N), from which on an arm on the cradle swings, in the axis in which it does so first.
+
+    Args:
+        apparent: Λ (3, 3), kg, D.
+        stiffness: of all buffers, N/m, downwards.
+        pole: ω, rad/s, of the free arm.
+    """
+    spring = np.array([0.0, 0.0, 2.0 * pole / stiffness])
+    return float((2.0 / (np.diag(apparent) * pole) + spring).min())
+
+
 def apparent_mass(arm: ArmModel) -> Array:
     """Λ (3, 3), kg, D, in the arm's present pose: what a force finds that may not turn the end effector."""
     mobility = arm.jacobian @ np.linalg.solve(arm.mass_matrix, arm.jacobian.T)
@@ -64,7 +84,7 @@ def apparent_mass(arm: ArmModel) -> Array:
 
 
 def gently(scenario: Scenario, arm: ArmModel, home: Array) -> Scenario:
-    """The scenario with a speed of lowering at which the magnet holds the plate through the touchdown.
+    """The scenario with a speed of lowering at which the magnet holds the plate through the touchdown, and a stable way of giving way.
 
     Args:
         scenario: believed.
@@ -76,7 +96,8 @@ def gently(scenario: Scenario, arm: ArmModel, home: Array) -> Scenario:
     """
     magnet, share, asked = scenario.magnet, scenario.limits.hinge_force_share, scenario.control.approach.lower_mps
     arm.update(lead(arm, home, np.array(scenario.place.put_down_m)), np.zeros(arm.joints))
-    blow = touchdown(scenario, apparent_mass(arm))
+    apparent = apparent_mass(arm)
+    blow, scenario = touchdown(scenario, apparent), _yielding(scenario, apparent)
     most = blow.speed(magnet.rating_n, share, magnet.shear_share)
     if asked is None:
         return scenario.replaced({"control": {"approach": {"lower_mps": min(LOWER_MPS, SHARE * most)}}})
@@ -88,3 +109,11 @@ def gently(scenario: Scenario, arm: ArmModel, home: Array) -> Scenario:
             f"or the rating at least {magnet.rating_n * asked / most:.0f} N"
         )
     return scenario
+
+
+def _yielding(scenario: Scenario, apparent: Array) -> Scenario:
+    approach = scenario.control.approach
+    most = YIELDING * swinging(apparent, BUFFERS * scenario.cradle.stiffness_npm, scenario.control.free_rad_s)
+    if is_settled(scenario, "control.approach.give_way_mpns") or approach.give_way_mpns <= most:
+        return scenario
+    return scenario.replaced({"control": {"approach": {"give_way_mpns": most}}})

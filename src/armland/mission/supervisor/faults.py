@@ -201,7 +201,7 @@ def _load_signs(
     force = _force(e)
     missed = expected > p.load_missed and force < LOAD_LEFT * expected
     # Nor does a UAV that the magnet has caught ever come to rest for a sensor whose zero runs away.
-    signs[WRENCH_DRIFT] = abs(e.hinge_force[2] - expected) > p.unexplained or runs_away
+    signs[WRENCH_DRIFT] = abs(known.calm[2] - expected) > p.unexplained or runs_away
     signs[OVERLOAD] = force > min(force_max, p.hinge_max)
     if signs[UAV_SILENT]:
         # It could not be given its thrust back: it is better off lying on the magnet.

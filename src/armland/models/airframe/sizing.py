@@ -1,16 +1,5 @@
 """What follows from a UAV's size where the user sets nothing: rules from the AR.Drone 2.0 on the LWR, which was tried, to any other.
 
-| symbol | name | AR.Drone |
-|---|---|---|
-| m | mass without plate and extra load | 0.48 kg |
-| J_i | inertia about each body axis | 0.006, 0.007, 0.012 kg·m² |
-| J_p | larger inertia about the pivot, J + m ρ² | 0.0087 kg·m² |
-| r | mean distance of the rotors from the middle axis | 0.180 m |
-| τ | rotor lag | 0.05 s |
-| n | number of rotors | 4 |
-| R | radius of a rotor | 0.1 m |
-| ω | bandwidth of the attitude loop on board: the AR.Drone's times (τ₀/τ), and no faster than its sampling bears | |
-
 A rule is a ratio to the AR.Drone by which a value of the scenario is multiplied. So the AR.Drone keeps its values
 bit for bit, and a UAV that is
 the AR.Drone twice as heavy, with twice the inertia and twice the thrust, on a cradle with buffers twice as stiff, moves as the AR.Drone
@@ -24,47 +13,25 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from armland.models.parameters import rotor_set, uav_parameters
+from armland.models.airframe.file import foreign_of
+from armland.models.airframe.size import Size, size_of
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 
-MASS_KG, LAG_S, RADIUS_M, RATE_HZ, RATING_N = 0.48, 0.05, 0.1, 200, 177.0
-INERTIA = np.array([0.006, 0.007, 0.012])
-LEVER_M, REACH_M = np.array([0.0, 0.0, -0.06]), float(np.hypot(0.127, 0.127))
-
-BUILT = ("uav", "rotors", "link", "hinge", "plate", "magnet", "cradle")
+BUILT = ("uav", "rotors", "link", "hinge", "plate", "magnet", "cradle", "sensors", "imperfections")
 """Sections of what is built, which follow from what the UAV is; all others follow from what is believed of it."""
 
 FELT = 0.25
 """Least ratio of what has to be felt beside the arm's own motion: 0.3 N of contact, 0.2 N of pull."""
 
-FASTEST = 2.0
-"""Largest bandwidth over rate of samples, in terms of the AR.Drone's: eleven samples within 1/ω are left, where it has eleven at 1."""
+CALM, CALM_S = "estimation.contact.calm_s", 0.025
+"""Key, and the time constant, s, at `FELT`: an arm that rests on the cradle makes 0.15 N of jitter, most of it above 15 Hz."""
 
+PADS_M, BEYOND_M = 0.015, 0.007
+"""Of the AR.Drone's magnet: radius of the circle of pads, and by how much the plate's exceeds it."""
 
-class Size(NamedTuple):
-    """Ratios of a UAV to the AR.Drone; exactly 1 where nothing differs."""
-
-    mass: float
-    inertia: tuple[float, float, float]
-    about_pivot: float
-    """J_p."""
-    reach: float
-    """r."""
-    number: float
-    """n."""
-    bandwidth: float
-    """ω."""
-    lag: float
-    """τ."""
-    radius: float
-    """R."""
-    rating: float
-    """Of the magnet."""
-    lever: float
-    """ρ, vertical."""
-    lower: float
-    """How much lower the pivot is, m: a difference and no ratio."""
+HOLDS = 0.15
+"""Least ratio of the magnet's rating, 27 N: the LWR pushes sideways with up to 1.6 N when it comes to rest on the cradle."""
 
 
 class Rule(NamedTuple):
@@ -83,6 +50,20 @@ def _felt(s: Size) -> float:
     return max(s.mass, FELT)
 
 
+def _lighter(s: Size) -> float:
+    return min(s.mass, 1.0)
+
+
+def _pads(s: Size) -> float:
+    return min(s.rating**0.25, 1.0)
+
+
+def _plate(s: Size) -> float:
+    # 7 mm beyond the circle of pads, whatever its size.
+    pads = _pads(s)
+    return 1.0 if pads == 1.0 else (PADS_M * pads + BEYOND_M) / (PADS_M + BEYOND_M)
+
+
 def _stiffness(s: Size) -> tuple[float, ...]:
     return tuple(j * s.bandwidth**2 for j in s.inertia)
 
@@ -92,6 +73,8 @@ def _damping(s: Size) -> tuple[float, ...]:
 
 
 WEIGHT = "grows with the weight"
+
+RANGE = "a lighter UAV asks for a force-torque sensor of a smaller range"
 
 RULES = (
     Rule("uav.drag_nspm", _weight, "quadrotors of all sizes lose 0.4 to 0.5 of their speed a second"),
@@ -112,7 +95,11 @@ RULES = (
     Rule("control.thrust.rate_nps", _weight, "the ramp takes as long"),
     Rule("control.thrust.slack_n", _weight, WEIGHT),
     Rule("control.thrust.floor_n", _weight, WEIGHT),
-    Rule("control.approach.give_way_mpns", lambda s: 1.0 / s.mass, "gives way to a share of the weight"),
+    Rule(
+        "control.approach.give_way_mpns",
+        lambda s: min(1.0 / s.mass, 1.0),
+        "gives way to a share of the weight, and no faster than the arm follows without swinging",
+    ),
     Rule(
         "control.approach.give_way_max_m",
         lambda s: max(s.lever, 1.0),
@@ -133,7 +120,7 @@ RULES = (
     Rule("bounds.thrust_left_n", _weight, WEIGHT),
     Rule("limits.carried_n", _weight, WEIGHT),
     Rule("limits.impact_n", _weight, WEIGHT),
-    Rule("limits.unexplained_n", _weight, WEIGHT),
+    Rule("limits.unexplained_n", _felt, WEIGHT),
     Rule("limits.load_gone_n", _weight, WEIGHT),
     Rule("limits.shortfall_n", _weight, WEIGHT),
     Rule("limits.stuck_n", _weight, WEIGHT),
@@ -143,44 +130,27 @@ RULES = (
     Rule("hinge.damping_nms", _weight, WEIGHT),
     Rule(
         "magnet.rating_n",
-        lambda s: s.mass**0.5,
-        "34 times the AR.Drone's weight is more than it needs: 7 times is left at 10 kg, 5 at 25 kg, for peaks of 1.5 times",
+        lambda s: s.mass**0.5 if s.mass > 1.0 else max(s.mass, HOLDS),
+        "34 times the AR.Drone's weight is more than it needs: 7 times is left at 10 kg, 5 at 25 kg, for peaks of 1.5 times; a "
+        "lighter one's is in proportion, and never too weak for the arm's friction",
     ),
-    Rule("plate.thickness_m", lambda s: s.rating**0.5, "the flux of a stronger magnet needs a thicker plate"),
+    Rule("magnet.pad_radius_m", _pads, "a weaker magnet is smaller"),
+    Rule("plate.radius_m", _plate, "covers the pads up to an offset of 7 mm"),
+    Rule(
+        "plate.thickness_m",
+        lambda s: s.rating**0.5 if s.rating > 1.0 else s.rating,
+        "the flux of a stronger magnet needs a thicker plate; a smaller magnet has smaller poles",
+    ),
     Rule("magnet.residual_n", lambda s: s.rating, "a share of the rating"),
     Rule("cradle.stiffness_npm", _weight, "sinks as far"),
     Rule("cradle.damping_nspm", _weight, "sinks as far"),
     Rule("cradle.mass_kg", _weight, "stiff enough for what it bears"),
+    Rule("sensors.force_n", _lighter, RANGE),
+    Rule("sensors.torque_nm", _lighter, RANGE),
+    Rule("imperfections.force_bias_n", _lighter, RANGE),
+    Rule("imperfections.torque_bias_nm", _lighter, RANGE),
 )
 """In the order in which they are applied: later ones may follow from earlier ones."""
-
-
-def size_of(scenario: Scenario) -> Size:
-    """Ratios of a scenario's UAV to the AR.Drone.
-
-    Raises:
-        ModelError: the UAV's file cannot be used.
-    """
-    body, rotors = uav_parameters(scenario), rotor_set(scenario)
-    mass = body.mass - scenario.uav.extra_mass_kg if scenario.uav.extra_mass_kg else body.mass
-    inertia = np.diag(body.inertia)
-    ratios = [_near(j) for j in inertia / INERTIA]
-    reach = float(np.hypot(rotors.place[:, 0], rotors.place[:, 1]).mean())
-    lag = scenario.rotors.time_constant_s / LAG_S
-    swung = _swung(inertia, mass, body.lever) / _swung(INERTIA, MASS_KG, LEVER_M)
-    return Size(
-        mass=_near(mass / MASS_KG),
-        inertia=(ratios[0], ratios[1], ratios[2]),
-        about_pivot=_near(swung),
-        reach=_near(reach / REACH_M),
-        number=rotors.number / 4,
-        bandwidth=min(_near(1.0 / lag), FASTEST * scenario.onboard.rate_hz / RATE_HZ),
-        lag=_near(lag),
-        radius=_near(scenario.rotors.radius_m / RADIUS_M),
-        rating=_near(scenario.magnet.rating_n / RATING_N),
-        lever=_near(body.lever[2] / LEVER_M[2]),
-        lower=float(LEVER_M[2] - body.lever[2]),
-    )
 
 
 def sized(scenario: Scenario) -> Scenario:
@@ -192,15 +162,36 @@ def sized(scenario: Scenario) -> Scenario:
     """
     if scenario.sized:
         return scenario
+    scenario = scenario.resolved(_told(scenario))
     for group in (("rotors.radius_m", "magnet.rating_n"), tuple(rule.key for rule in RULES)):
         done = {rule.key for rule in RULES} - set(group) if len(group) == 2 else {"rotors.radius_m", "magnet.rating_n"}
         scenario = scenario.resolved(_changes(scenario, [r for r in RULES if r.key not in done]))
     return scenario
 
 
+def said(scenario: Scenario) -> dict[str, float]:
+    """What the UAV's file says of its rotors, by dotted key, where the user sets nothing else."""
+    told = foreign_of(scenario)
+    found = (
+        {} if told is None else {"max_thrust_n": told.high, "min_thrust_n": told.low, "drag_torque_m": told.drag_torque}
+    )
+    named = {f"rotors.{name}": value for name, value in found.items() if value is not None}
+    return {key: value for key, value in named.items() if not is_settled(scenario, key)}
+
+
+def _told(scenario: Scenario) -> dict[str, Any]:
+    out = dict[str, Any]()
+    for key, value in said(scenario).items():
+        update(out, nested(key, value))
+    return out
+
+
 def _changes(scenario: Scenario, rules: list[Rule]) -> dict[str, Any]:
     real, believed, out = size_of(scenario), size_of(scenario.believed()), dict[str, Any]()
+    of_file = said(scenario)
     for rule in rules:
+        if rule.key in of_file:
+            continue
         factor = rule.factor(real if rule.key.partition(".")[0] in BUILT else believed)
         if is_settled(scenario, rule.key) or np.all(np.equal(factor, 1.0)):
             continue
@@ -209,9 +200,16 @@ def _changes(scenario: Scenario, rules: list[Rule]) -> dict[str, Any]:
             [v * f for v, f in zip(value, factor, strict=True)] if isinstance(factor, tuple) else _times(value, factor)
         )
         update(out, nested(rule.key, made))
+    if believed.mass < FELT and not is_settled(scenario, CALM):
+        # What the arm's jitter makes does not shrink with the UAV; it averages out.
+        update(out, nested(CALM, CALM_S * FELT / believed.mass))
     if abs(real.lower) > 1e-6 and not is_settled(scenario, "skids.z_m"):
         # The UAV stands on its skids with the plate as far above the ground as the AR.Drone's.
         update(out, {"skids": {"z_m": scenario.skids.z_m - real.lower}})
+    if abs(real.lower) > 1e-6 and not is_settled(scenario, "camera.marker_m"):
+        # So does the camera see the marker at the same distance.
+        x, y, z = scenario.camera.marker_m
+        update(out, {"camera": {"marker_m": [x, y, z - real.lower]}})
     return out
 
 
@@ -237,12 +235,3 @@ def nested(key: str, value: Any) -> dict[str, Any]:
 
 def _times(value: Any, factor: float) -> Any:
     return [v * factor for v in value] if isinstance(value, tuple) else value * factor
-
-
-def _near(ratio: float) -> float:
-    # What differs by rounding alone is the AR.Drone's.
-    return 1.0 if abs(ratio - 1.0) < 1e-9 else float(ratio)
-
-
-def _swung(inertia: np.ndarray, mass: float, lever: np.ndarray) -> float:
-    return float(max(inertia[0], inertia[1]) + mass * lever[2] ** 2)

@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from armland.models.airframe.sizing import RULES, at, is_settled
+from armland.models.airframe.file import foreign_of
+from armland.models.airframe.sizing import RULES, at, is_settled, said
 from armland.models.parameters import rotor_set, uav_parameters
 from armland.scenario import Scenario
 from armland.scenario.files.airframe import sources
@@ -67,22 +68,32 @@ def rows_of(scenario: Scenario) -> list[UavRow]:
     }
     out = []
     for key, value in named.items():
-        absent = (
-            "alternating about the body" if key == "rotors.spin" else "along body z" if not scenario.uav.file else file
-        )
+        absent = _absent(key, scenario, file)
         source = _given(key, told) if is_settled(scenario, key) else absent
         out.append(UavRow(key, value, _unit(key), source))
-    because = {rule.key: rule.because for rule in RULES}
+    because, of_file = {rule.key: rule.because for rule in RULES}, said(scenario)
     for key in dict.fromkeys((*because, *SHOWN)):
         value = at(scenario, key)
         if is_settled(scenario, key):
             source = _given(key, told)
+        elif key in of_file:
+            source = file
         elif key in because:
             source = f"rule: {because[key]}"
         else:
             source = "default"
         out.append(UavRow(key, list(value) if isinstance(value, tuple) else value, _unit(key), source))
     return out
+
+
+def _absent(key: str, scenario: Scenario, file: str) -> str:
+    # Where a value of body or rotors comes from that the user has not set.
+    foreign = foreign_of(scenario)
+    if key == "rotors.spin":
+        return file if foreign is not None and foreign.spin is not None else "alternating about the body"
+    if key == "uav.lever_m" and foreign is not None and foreign.pivot is None:
+        return "rule: the paper's hinge, shorter where the rotors sit closer"
+    return file if scenario.uav.file else "along body z"
 
 
 def _given(key: str, told: dict[str, str]) -> str:

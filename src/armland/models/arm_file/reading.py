@@ -70,13 +70,17 @@ def _read(path: Path, changed: int, asked: Asked) -> ArmFile:
         raise ModelError(f"{made.what} is not a valid model: {' '.join(str(e).split())}") from e
 
 
-def read_tree(path: Path) -> Tree:
+def read_tree(path: Path, kind: str = "arm file") -> Tree:
     """All that a file says about a robot.
+
+    Args:
+        path: URDF or MJCF file.
+        kind: what it is called in messages.
 
     Raises:
         ModelError: it is no URDF or MJCF, or what it says cannot be.
     """
-    what = f"arm file {str(path)!r}"
+    what = f"{kind} {str(path)!r}"
     root = read_root(path, what)
     if root.tag == "robot":
         return read_urdf(root, what)

@@ -7,7 +7,7 @@ import numpy as np
 
 from armland.control.laws.realisation import elbow_of
 from armland.errors import ConfigurationError
-from armland.models.parameters import arm_model
+from armland.models.parameters import arm_model, rotor_count
 from armland.plant.devices.camera_numbers import ERRORS, well
 from armland.plant.scene.composition import Scene
 from armland.records import MOST_ROTORS, Records
@@ -81,11 +81,12 @@ def tell(told: Records, scenario: Scenario, scene: Scene, phases: tuple[str, ...
     """Fill `told` (1,); `phases` are the names of the mission's phases, in the order of the numbers that `act` gets.
 
     Raises:
-        ConfigurationError: a fault in a phase that the mission does not have, of a joint that the arm does not have, or of a
-            device that the scene does not have.
+        ConfigurationError: a fault in a phase that the mission does not have, of a joint that the arm or of a rotor that the
+            UAV does not have, or of a device that the scene does not have.
     """
+    rotors = rotor_count(scenario)
     for fault in scenario.faults:
-        _check(fault, scene, phases)
+        _check(fault, scene, rotors, phases)
     bodies = {"uav": scene.uav_body, "tool": scene.tool_body}
     if any(f.body == "elbow" for f in scenario.faults):
         # The link that the elbow's joint moves: the file says, or the arm's geometry.
@@ -100,11 +101,13 @@ def tell(told: Records, scenario: Scenario, scene: Scene, phases: tuple[str, ...
         row["body"], row["alone"] = bodies[f.body], f.body in alone
 
 
-def _check(fault: Fault, scene: Scene, phases: tuple[str, ...]) -> None:
+def _check(fault: Fault, scene: Scene, rotors: int, phases: tuple[str, ...]) -> None:
     if fault.phase is not None and fault.phase not in phases:
         raise ConfigurationError(f"faults: no phase {fault.phase!r}; the mission's phases are {', '.join(phases)}")
     if fault.joint > scene.joints:
         raise ConfigurationError(f"faults: joint {fault.joint} does not exist; the arm has joints 1 to {scene.joints}")
+    if fault.kind == "rotor_loss" and fault.rotor > rotors:
+        raise ConfigurationError(f"faults: rotor {fault.rotor} does not exist; the UAV has rotors 1 to {rotors}")
     needed = "camera" if fault.kind == "non_finite" and fault.device == "camera" else NEEDS.get(fault.kind)
     if needed is not None and needed not in scene.parts:
         raise ConfigurationError(f"faults: {fault.kind} cannot act: the mission flies without a {needed}")

@@ -2,9 +2,8 @@
 
 A scenario names one by `airframe`. Its values lie above those that come with armland and below those that the user's
 scenario sets. A file
-without `uav.file` describes the UAV whole: mass, inertia, lever, and the places of the rotors. An MJCF file is one
-that says no more than
-itself.
+without `uav.file` describes the UAV whole: mass, inertia, lever, and the places of the rotors. An MJCF or URDF file is one that says no
+more than itself.
 """
 
 import csv
@@ -71,7 +70,7 @@ def read_airframe(path: Path) -> dict[str, Any]:
     Raises:
         ConfigurationError: a file that cannot be read, or that holds or lacks what it should not.
     """
-    if path.suffix.lower() in (".xml", ".mjcf"):
+    if path.suffix.lower() in (".xml", ".mjcf", ".urdf"):
         return {"uav": {"file": str(path)}}
     data = read_toml(path)
     data.pop("sources", None)

@@ -15,7 +15,7 @@ import numpy as np
 
 from armland.errors import ModelError
 from armland.models.arm_file.formats import actuators
-from armland.models.arm_file.formats.text import numbers, read_root
+from armland.models.arm_file.formats.text import included, numbers
 from armland.models.arm_file.inertia import NOTHING, extended, impossible, lacking, principal
 from armland.models.arm_file.tree import CLASS, FILE, Body, Frame, Inertial, Joint, Kind, Pose, Shape, Tree, Value, here
 
@@ -57,7 +57,7 @@ def read_mjcf(root: ET.Element, path: Path, what: str) -> Tree:
     Raises:
         ModelError: what MuJoCo complains of, or a body without mass where its meshes are missing.
     """
-    root = _included(root, path, what, 0)
+    root = included(root, path, what)
     own = _own(root, what)
     model, complaints = _compiled(_robot(root), path, what)
     written = {j.get("name", ""): j for j in root.iter("joint")}
@@ -70,20 +70,6 @@ def read_mjcf(root: ET.Element, path: Path, what: str) -> Tree:
             at = Pose(model.site_pos[i].copy(), model.site_quat[i].copy())
             frames.append(Frame(model.site(i).name, int(model.site_bodyid[i]) - 1, at))
     return Tree(what, "MJCF", bodies, tuple(frames), ())
-
-
-def _included(root: ET.Element, path: Path, what: str, depth: int) -> ET.Element:
-    if depth > 8:
-        raise ModelError(f"{what}: its files include each other more than 8 deep")
-    for parent in list(root.iter()):
-        for place, child in reversed(list(enumerate(parent))):
-            if child.tag == "include":
-                name = child.get("file", "")
-                inner = _included(
-                    read_root(path.parent / name, f"{what}: included file {name!r}"), path, what, depth + 1
-                )
-                parent[place : place + 1] = list(inner)
-    return root
 
 
 def _own(root: ET.Element, what: str) -> dict[str, tuple[float, ...]]:
@@ -122,7 +108,7 @@ def _robot(root: ET.Element) -> ET.Element:
 
 def _compiled(root: ET.Element, path: Path, what: str) -> tuple[mujoco.MjModel, dict[str, str]]:
     try:
-        spec = _parsed(root)
+        spec = parsed(root)
         spec.modelfiledir = str(path.parent)
         complaints = _drop_meshes(spec, path)
         c = spec.compiler
@@ -136,7 +122,12 @@ def _compiled(root: ET.Element, path: Path, what: str) -> tuple[mujoco.MjModel, 
         raise ModelError(f"{what} cannot be read: {' '.join(str(e).split())}") from e
 
 
-def _parsed(root: ET.Element) -> mujoco.MjSpec:
+def parsed(root: ET.Element) -> mujoco.MjSpec:
+    """The spec of an MJCF's `root`, without the attributes that this version of MuJoCo does not know.
+
+    Raises:
+        ValueError: what MuJoCo complains of besides.
+    """
     # Versions of MuJoCo differ in what they know; what this one does not is left behind.
     for _ in range(50):
         try:

@@ -36,6 +36,31 @@ def read_root(path: Path, what: str) -> ET.Element:
         raise ModelError(f"{what} is not well-formed XML: {e}") from e
 
 
+def included(root: ET.Element, path: Path, what: str, depth: int = 0) -> ET.Element:
+    """An MJCF's `root` with the files in place that it includes.
+
+    Args:
+        root: its `<mujoco>`, changed.
+        path: of the file; what it includes stands beside it.
+        what: its name in messages.
+        depth: of files that include it.
+
+    Raises:
+        ModelError: an included file cannot be read, or they include each other.
+    """
+    if depth > 8:
+        raise ModelError(f"{what}: its files include each other more than 8 deep")
+    for parent in list(root.iter()):
+        for place, child in reversed(list(enumerate(parent))):
+            if child.tag == "include":
+                name = child.get("file", "")
+                inner = included(
+                    read_root(path.parent / name, f"{what}: included file {name!r}"), path, what, depth + 1
+                )
+                parent[place : place + 1] = list(inner)
+    return root
+
+
 def _decoded(raw: bytes) -> str:
     # A byte-order mark decides; else what the first line declares; else UTF-8.
     for mark, name in ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16")):
