@@ -45,7 +45,7 @@ def test_refusal_names_the_nearest_place_and_it_works(too_high):
 
 
 def test_refusal_of_an_arm_that_can_land_nowhere_says_so():
-    weak = load_scenario("landing", {"arm": {"torque_limits_nm": [20.0] * 7}})
+    weak = load_scenario("landing", {"arm": {"torque_limits_nm": [2.0] * 7}})
     told = str(refused(weak, LANDING, WorkspaceError("joint A2 is too weak")))
     assert told.startswith("joint A2 is too weak. No place was found for this arm. Of ")
     assert "none takes up to 0.9 of the joints' torques for arm and UAV; at least" in told
