@@ -235,6 +235,15 @@ def test_nod_tells_the_gain_of_the_force_sensor_whatever_its_bias(bench, gain):
     np.testing.assert_allclose(nodded(bench, gain, bias=(3.0, -2.0, 1.0)), gain, atol=1e-6)
 
 
+@pytest.mark.parametrize("share", [1.0, 0.4, 0.0])
+def test_nod_tells_the_share_of_itself_that_the_arm_made(bench, share):
+    for k in range(500):
+        v = np.array([0.05, 0.04, -0.06]) * np.sin(4.0 * np.pi * k / 500)
+        bench.kept["refer"]["v"], bench.e["v"] = v, share * v
+        feel_nod(bench.m[0], bench.b)
+    np.testing.assert_allclose(bench.kept["estimate"]["nod"]["followed"][0], share, atol=1e-9)
+
+
 def test_noise_of_the_force_sensor_leaves_its_gain_within_the_slopes_error(bench):
     """σ/(m √Σa²), with Σa² = 250 A² of the sines: five of them."""
     error = 0.05 / (bench.told["estimate"]["wrench"]["mass"][0] * np.sqrt(250.0) * np.array([1.5, 1.2, 1.8]))

@@ -120,7 +120,8 @@ def signs() -> dict[str, str]:
         "never with a silent UAV",
         "camera_noise": f"variance of the images above {sign.NOISY:g} times what the camera claims",
         "wrench_wrong": f"force over the tool's inertia force outside {sign.WEIGHED[0]:g} to {sign.WEIGHED[1]:g} on any axis, "
-        f"{sign.WEIGHED_S:g} s into the self-test's nod; or, on an arm that touches nothing and follows its reference, a vertical "
+        f"{sign.WEIGHED_S:g} s into the self-test's nod, of which the arm made {sign.NODDED[0]:g} to {sign.NODDED[1]:g}; "
+        f"or, on an arm that touches nothing and follows its reference, a vertical "
         f"force that leaps by {sign.ALIVE_N:g} of the tool's weight; or a reading of nothing, not even of the tool",
         "link_late": f"samples come, and say that commands came, but both ways together more than {1e3 * LATE_S:g} ms late (or "
         f"{1e3 * LATER_S:g} ms more than the scenario says), or one way more than {v.uav_age_ms:g} ms",
@@ -130,7 +131,8 @@ def signs() -> dict[str, str]:
         f"{v.stuck_n:g} N {1e3 * sign.STUCK_M:g} mm away, "
         f"or the plate within {1e3 * sign.TOUCHES_M:g} mm after {1e3 * sign.FOLLOWED_M:g} mm, "
         "pulling with what the thrust exceeds the weight",
-        "arm_blocked": f"end effector more than {1e3 * sign.BLOCKED_M:g} mm off its reference",
+        "arm_blocked": f"end effector more than {1e3 * sign.BLOCKED_M:g} mm off its reference; or a nod of which the arm made less "
+        f"than {sign.NODDED[0]:g}, or more than {sign.NODDED[1]:g}, and the sensor felt the tool accordingly",
         "thrust_lost": f"sinking at more than {sign.SINKS_MPS:g} m/s with all the thrust, or at more than {sign.PLUNGES_MPS:g} m/s "
         f"with {sign.STRAINS:g} times the hover thrust; or a UAV that needs nearly all that its rotors give, by itself or as the "
         "arm feels it on the magnet",

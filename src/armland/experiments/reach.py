@@ -9,7 +9,7 @@ from armland.errors import ConfigurationError, WorkspaceError
 from armland.mission.belief import flyer
 from armland.mission.feasibility.obstacles import Obstacles
 from armland.mission.feasibility.places import Bench, Place, everywhere, first_axis
-from armland.mission.feasibility.placing import NEAREST, NOWHERE, alternatives
+from armland.mission.feasibility.placing import NEAREST, alternatives, nowhere
 from armland.mission.plan import plan
 from armland.mission.registry import mission_named
 from armland.models.parameters import arm_model
@@ -70,7 +70,7 @@ def reach(scenario: Scenario) -> Reach:
     except WorkspaceError as e:
         refusal = str(e)
         nearest = _nearest(scenario)
-        refusal = refusal if nearest is not None else f"{refusal}. {NOWHERE}"
+        refusal = refusal if nearest is not None else f"{refusal}. {nowhere(scenario, mission_named(MISSION))}"
     axis = first_axis(arm)
     found = everywhere(Bench(arm, believed, weight, Obstacles(believed), 0.0))
     radius = float(np.hypot(*(np.array(scenario.place.catch_m) - axis)[:2]))

@@ -75,8 +75,11 @@ def told_layout() -> np.dtype:
     )
 
 
-NOD = np.dtype([("count", "i8"), *((name, "f8", (3,)) for name in ("a", "f", "aa", "fa", "gain"))])
-"""Sums over a nod of the tool's acceleration a, m/s², the force f, N, and their products; the force found over the one expected, 1."""
+NOD = np.dtype(
+    [("count", "i8"), *((name, "f8", (3,)) for name in ("a", "f", "aa", "fa", "gain", "vv", "wv", "followed"))]
+)
+"""Sums over a nod of the tool's acceleration a, m/s², the force f, N, and their products; the force found over the one expected, 1;
+sums of v², v the speed asked for, m/s, and of w v, w the speed measured; the share of the nod that the arm made, 1."""
 
 
 @lru_cache

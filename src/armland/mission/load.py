@@ -63,16 +63,18 @@ def estimate_load(free: bool, magnet: bool, retreat: float, b: Record) -> None:
 
 @njit(cache=True)
 def feel_nod(m: Record, b: Record) -> None:
-    """Compare the force that the sensor reads while the arm nods with the tool's inertia force, by the slope of a straight line.
+    """Compare the force that the sensor reads while the arm nods with the tool's inertia force, by the slope of a straight line,
+    and the arm's speed with the one asked for.
 
-    A constant bias does not change it. A dead sensor gives 0, a reversed one −1.
+    A constant bias does not change the first. A dead sensor gives 0, a reversed one −1. An arm that sticks makes part of the nod, and
+    the tool's inertia force is as small.
 
     Args:
         m: measurement.
         b: board; what the estimate keeps of the nod is updated.
     """
     n, mass = b.kept.estimate.nod, b.told.estimate.wrench.mass
-    force, a = turned(b.arm.rotation, m.wrench[:3]), b.kept.refer.a
+    force, a, v, w = turned(b.arm.rotation, m.wrench[:3]), b.kept.refer.a, b.kept.refer.v, b.tick.estimate.v
     n.count += 1
     for i in range(3):
         n.a[i] += a[i]
@@ -82,6 +84,9 @@ def feel_nod(m: Record, b: Record) -> None:
         spread = n.aa[i] - n.a[i] ** 2 / n.count
         if spread > 0.0:
             n.gain[i] = (n.fa[i] - n.f[i] * n.a[i] / n.count) / (mass * spread)
+        n.vv[i] += v[i] ** 2
+        n.wv[i] += w[i] * v[i]
+        n.followed[i] = n.wv[i] / n.vv[i] if n.vv[i] > 0.0 else 1.0
 
 
 @njit(cache=True)

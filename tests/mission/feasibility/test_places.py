@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from armland.mission.belief import flyer
+from armland.mission.feasibility import places as grid
 from armland.mission.feasibility.obstacles import Obstacles
 from armland.mission.feasibility.places import Bench, Place, places
 from armland.models.parameters import arm_model
@@ -47,6 +48,13 @@ def test_places_are_told_by_falling_merit_and_are_the_same_again(found):
     assert merits == sorted(merits, reverse=True)
     again = next(places(bench(), EVERYTHING))
     np.testing.assert_array_equal([p.catch for p in again], [p.catch for p in found])
+
+
+def test_arm_that_reaches_no_centre_begins_from_poses_that_it_can_take(monkeypatch):
+    monkeypatch.setattr(grid, "CENTRES", ((5.0, 5.0),))
+    assert next(places(bench(), EVERYTHING))
+    monkeypatch.setattr(grid, "_scattered", lambda search: [])
+    assert not next(places(bench(), EVERYTHING))
 
 
 def test_the_best_is_nearer_where_nearness_counts_for_more(found):

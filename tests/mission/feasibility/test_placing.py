@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from armland.errors import WorkspaceError
+from armland.mission.feasibility import placing
 from armland.mission.feasibility.placing import NOWHERE, alternatives, kept, refused, told_places
 from armland.mission.plan import plan
 from armland.mission.registry import MISSIONS
@@ -44,9 +45,15 @@ def test_refusal_names_the_nearest_place_and_it_works(too_high):
 
 
 def test_refusal_of_an_arm_that_can_land_nowhere_says_so():
-    weak = load_scenario("landing", {"arm": {"torque_limits_nm": [20.0] * 7}})
+    weak = load_scenario("landing", {"arm": {"torque_limits_nm": [2.0] * 7}})
     told = str(refused(weak, LANDING, WorkspaceError("joint A2 is too weak")))
-    assert told == f"joint A2 is too weak. {NOWHERE}"
+    assert told.startswith("joint A2 is too weak. No place was found for this arm. Of ")
+    assert "none takes up to 0.9 of the joints' torques for arm and UAV; at least" in told
+
+
+def test_where_no_single_condition_stands_in_the_way_the_refusal_names_them_all(monkeypatch):
+    monkeypatch.setattr(placing, "alternatives", lambda *_: iter(()))
+    assert str(refused(load_scenario("landing"), LANDING, WorkspaceError("no"))) == f"no. {NOWHERE}"
 
 
 def test_slot_is_told_where_it_is_another(too_high):

@@ -18,7 +18,8 @@ LONG = 310
 @pytest.fixture
 def bench(bench):
     """The arm is where its reference is, and the sensor's nod has weighed the tool."""
-    bench.kept["refer"]["r"], bench.kept["estimate"]["nod"]["gain"] = bench.e["r"], 1.0
+    bench.kept["refer"]["r"] = bench.e["r"]
+    bench.kept["estimate"]["nod"]["gain"] = bench.kept["estimate"]["nod"]["followed"] = 1.0
     bench.kept["act"]["hover"], bench.kept["act"]["thrust"] = weight(bench), 0.5 * weight(bench)
     # What the sensor reads of the tool at rest.
     bench.m["wrench"][0, 2] = tool(bench)
@@ -312,6 +313,16 @@ def test_force_sensor_must_feel_the_tool_as_it_is_along_every_axis(bench, axis, 
     assert find(bench, LONG) == found
     # Before the nod has weighed it, nothing is said.
     nod["count"], bench.kept["decide"]["seen"]["counts"] = 440, 0
+    assert find(bench, LONG) == "none"
+
+
+@pytest.mark.parametrize(("followed", "found"), [(1.0, "wrench_wrong"), (0.3, "arm_blocked"), (1.5, "arm_blocked")])
+def test_sensor_is_not_blamed_for_a_tool_that_the_arm_did_not_move(bench, followed, found):
+    nod = bench.kept["estimate"]["nod"]
+    nod["count"], nod["gain"][0], nod["followed"][0, 1] = 460, 0.3, followed
+    assert find(bench, LONG) == found
+    # A sensor that feels the tool as it should is good enough for any arm.
+    nod["gain"][0], bench.kept["decide"]["seen"]["counts"] = 1.0, 0
     assert find(bench, LONG) == "none"
 
 

@@ -50,6 +50,9 @@ CENTRES = ((0.5, 0.35), (0.6, 0.1), (0.45, 0.6), (0.35, 0.3))
 STARTS, BRANCHES, ALIKE_RAD = 150, 10, 0.4
 """Random poses that are led to each centre; poses from which the grid is filled; how far two of those differ at least."""
 
+SCATTERED = 12
+"""Poses from anywhere that are tried where the centres lead to no place."""
+
 ENOUGH = 25
 """Nodes after which no further branch is looked at."""
 
@@ -121,12 +124,14 @@ def _along(
 ) -> list[Place]:
     search = _Search(bench, _Grid(bench, heading, keep, apart), body_of(bench.arm), sinking(bench.arm, bench.scenario))
     found: dict[_Node, Place] = {}
-    for q in _branches(search):
-        for node, place in _filled(search, q):
-            if node not in found or place.merit > found[node].merit:
-                found[node] = place
-        if len(found) >= enough:
-            break
+    # Poses from anywhere are slower, and tell nothing new of an arm that reaches the centres: the first that leads to places will do.
+    for branches, plenty in ((_branches, enough), (_scattered, 1)):
+        for q in branches(search) if not found else ():
+            for node, place in _filled(search, q):
+                if node not in found or place.merit > found[node].merit:
+                    found[node] = place
+            if len(found) >= plenty:
+                break
     return sorted(found.values(), key=lambda p: -p.merit)
 
 
@@ -202,6 +207,24 @@ def _branches(search: _Search) -> list[Array]:
             if here >= BRANCHES // 2 or len(out) >= BRANCHES:
                 break
     return out[:BRANCHES]
+
+
+def _scattered(search: _Search) -> list[Array]:
+    # Upright poses from all over the joints' ranges, each of another node, for an arm that reaches none of the centres.
+    arm, out, seen = search.bench.arm, list[Array](), set[_Node]()
+    for start in poses(arm.model):
+        q = start.copy()
+        arm.update(q, np.zeros(arm.joints))
+        there = arm.position.copy()
+        node = search.grid.node(there)
+        if node in seen or search.grid.catch(node) is None or not reached(search.body, q, there, 60, CAUTION):
+            continue
+        if sink(search.body, q, there, search.how, AT_ONCE):
+            seen.add(node)
+            out.append(q)
+        if len(out) >= SCATTERED:
+            break
+    return out
 
 
 def _filled(search: _Search, q: Array) -> Iterator[tuple[_Node, Place]]:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from armland.errors import ConfigurationError, WorkspaceError
 from armland.mission.belief import flyer
+from armland.mission.feasibility.hindrance import hindrance
 from armland.mission.feasibility.obstacles import Obstacles
 from armland.mission.feasibility.places import Bench, places
 from armland.mission.feasibility.reach import survey
@@ -71,9 +72,15 @@ def refused(scenario: Scenario, mission: Mission, refusal: WorkspaceError) -> Wo
     """The refusal of a scenario, with the nearest place that works, or that none was found."""
     near = next(alternatives(scenario, mission, frozenset(), NEAREST), None)
     if near is None:
-        return WorkspaceError(f"{refusal}. {NOWHERE}")
+        return WorkspaceError(f"{refusal}. {nowhere(scenario, mission)}")
     home = f"place.home_deg = {list(near.place.home_deg or ())}"
     return WorkspaceError(f"{refusal}. This arm could catch at {told_places(near, scenario)} and {home}")
+
+
+def nowhere(scenario: Scenario, mission: Mission) -> str:
+    """That no place was found for the scenario's arm, and the first thing that stands in the way."""
+    why = hindrance(scenario, mission)
+    return f"No place was found for this arm. {why}" if why else NOWHERE
 
 
 BEST, NEAREST = 0.5, 5.0

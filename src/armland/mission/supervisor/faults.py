@@ -66,8 +66,9 @@ LEAPT_S = 0.2
 NOISY = 25.0
 """Variance of the camera over what it claims, beyond which it is not to be trusted: five times the standard deviation."""
 
-WEIGHED_S, WEIGHED = 0.45, (0.6, 1.5)
-"""Time of the nod after which the tool has been weighed; force found over force expected of a sensor that can be used."""
+WEIGHED_S, WEIGHED, NODDED = 0.45, (0.6, 1.5), (0.8, 1.2)
+"""Time of the nod after which the tool has been weighed; force found over force expected of a sensor that can be used; share of the
+nod that an arm makes which lets the sensor be judged."""
 
 STUCK_M, STUCK_S = 0.002, 0.2
 """Way that the reference has drawn back from which on a plate that pulls sticks; time after which the current is gone."""
@@ -177,10 +178,13 @@ def _device_signs(
     leapt = known.filter.leapt > 0 and (m.tick - known.filter.leapt) * p.tick_s < LEAPT_S
     signs[CAMERA_LEAP] = leapt and not signs[UAV_SILENT]
     signs[CAMERA_NOISE] = known.filter.noise > NOISY
-    nod = known.nod
+    nod, wrong, nodded = known.nod, False, True
     for i in range(3):
-        weighed = nod.count * p.tick_s > WEIGHED_S and not WEIGHED[0] < nod.gain[i] < WEIGHED[1]
-        signs[WRENCH_WRONG] = signs[WRENCH_WRONG] or weighed
+        wrong = wrong or not WEIGHED[0] < nod.gain[i] < WEIGHED[1]
+        nodded = nodded and NODDED[0] < nod.followed[i] < NODDED[1]
+    if nod.count * p.tick_s > WEIGHED_S and wrong:
+        # A tool that was not moved as it should weighs nothing: that is the arm's fault, and says nothing of the sensor.
+        signs[WRENCH_WRONG if nodded else ARM_BLOCKED] = True
     for i in range(known.same.shape[0]):
         signs[ENCODER_FROZEN] = signs[ENCODER_FROZEN] or known.same[i] > 1
     signs[WRENCH_STALE] = m.tick - m.wrench_tick > p.wrench_age
@@ -241,7 +245,7 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     # What the arm still carries the rotors would have to give as well.
     left = max(e.hinge_force[2], 0.0) if row.uav == BALANCE else 0.0
     signs[THRUST_LOST] = sinks or (weighed and kept.act.hover + left > p.hover_max)
-    signs[ARM_BLOCKED] = apart > BLOCKED_M**2
+    signs[ARM_BLOCKED] = signs[ARM_BLOCKED] or apart > BLOCKED_M**2
     if kept.act.magnet != 0:
         seen.off, seen.carried, seen.zero = m.tick, row.observe, seen.short
     # It moves with the arm: F = m a + W (1 − f_T/T_h), and more by what its rotors fail to give.

@@ -40,7 +40,7 @@ REMEDIES: dict[str, tuple[str, str]] = {
         "look at coil, residual force and faces",
     ),
     "arm_blocked": (
-        "the arm in free motion does not follow its reference: something is in its way or a joint fails",
+        "the arm in free motion does not follow its reference: something is in its way, or a joint fails or sticks",
         "look for what it touches, then release the brakes",
     ),
     "thrust_lost": (

@@ -7,9 +7,14 @@ from armland.plant.scene.eye import HOUSING
 from armland.plant.scene.uav import PLATE, UAV
 from armland.records import MOST_ROTORS
 
-OPEN_M, HINT_N = 1e-6, 1e-3
+OPEN_M, HINT_N = 5e-6, 1e-3
 """Gap at which a skid has left a rail, and the adhesion up to it: too small to hold anything. In the gap a contact has no friction,
 so it is far less than a touchdown travels in a step: skids that closed through it for milliseconds would slide like on ice."""
+
+HARD, BEARING = 0.999, 0.98
+"""Impedance of contacts, and of those of the skids on the rails, which a touchdown pushes aside. MuJoCo's friction is convex: near its
+end it opens a contact, against the load times the regularisation (1 − d)/d of its inverse mass. The harder one opens altogether: for a
+step nothing bears, and the next one makes up for it by a blow. One that slides opens all the same."""
 
 
 def add_contacts(spec: mujoco.MjSpec, links: list[str]) -> None:
@@ -37,9 +42,9 @@ def _add_pair(spec: mujoco.MjSpec, one: str, other: str, friction: float, bears:
         geomname2=other,
         condim=3,
         friction=[friction, friction, 0.0, 0.0, 0.0],
-        # What gives way is the cradle, and not this: a load of 20 N presses skid and rail together by 1 µm.
+        # What gives way is the cradle, and not this: a load of 20 N presses skid and rail together by some micrometres.
         solref=closing(RATE, spec.option.timestep),
-        solimp=[0.999, 0.999, 0.001, 0.5, 2.0],
+        solimp=[*(2 * [BEARING if bears else HARD]), 0.001, 0.5, 2.0],
         # So hard a contact opens by 0.1 µm for a step while its load changes. A hint of adhesion keeps it active meanwhile.
         gap=OPEN_M if bears else 0.0,
         adhesion=HINT_N if bears else 0.0,
