@@ -9,9 +9,8 @@ from armland.control.laws.settings import row_of
 from armland.control.laws.table import EXACT
 from armland.errors import ConfigurationError
 from armland.mission.belief import Flyer, flyer, hinged
-from armland.mission.feasibility.by_hand import check_by_hand
 from armland.mission.feasibility.capture import check_capture
-from armland.mission.feasibility.keys import check_keys
+from armland.mission.feasibility.keys import check_by_hand, check_keys
 from armland.mission.feasibility.launch import Carrying, Launch, plan_launch, timed
 from armland.mission.feasibility.pace import paced
 from armland.mission.feasibility.path import survey_path

@@ -1,9 +1,10 @@
-"""Keys without effect and speeds of another arm are refused by their path."""
+"""Keys without effect, speeds of another arm, and values that cannot work: refused by path or with the bound."""
 
 import pytest
 
 from armland.errors import ConfigurationError
-from armland.mission.feasibility.keys import check_keys
+from armland.mission.belief import flyer
+from armland.mission.feasibility.keys import check_by_hand, check_keys
 from armland.mission.plan import plan
 from armland.mission.registry import MISSIONS
 from armland.scenario import load_scenario
@@ -49,3 +50,30 @@ def test_prefix_of_a_key_is_a_whole_table_and_no_part_of_a_word():
     with pytest.raises(ConfigurationError, match="runner"):
         check_keys(frozenset({"runner"}), MISSIONS["landing"])
     check_keys(frozenset({"run.seed"}), MISSIONS["landing"])
+
+
+def check(**onboard):
+    scenario = load_scenario("landing", {"onboard": onboard})
+    check_by_hand(scenario, flyer(scenario))
+
+
+@pytest.mark.parametrize(
+    ("good", "bad", "words"),
+    [
+        (
+            {"hover": {"thrust_max_n": 5.46}},
+            {"hover": {"thrust_max_n": 5.4}},
+            r"thrust_max_n = 5.4 N lets a UAV of 5.18 N sink",
+        ),
+        (
+            {"hover": {"lift_min_n": 4.39}},
+            {"hover": {"lift_min_n": 4.5}},
+            r"lift_min_n = 4.5 N lets a UAV of 5.18 N rise",
+        ),
+        ({"kp_nm": [0.29, 0.29, 0.1]}, {"kp_nm": [0.28, 0.29, 0.1]}, r"0.28 N·m/rad in roll .* above m g l = 0.283"),
+    ],
+)
+def test_bounds(good, bad, words):
+    check(**good)
+    with pytest.raises(ConfigurationError, match=words):
+        check(**bad)
