@@ -35,6 +35,8 @@ same keys does in a scenario's file.
 
 `armland COMMAND --uav x500` lands another UAV, one that comes with armland or your own as a file; `armland uav x500` says what of it.
 
+`armland COMMAND --wind 4` flies in wind of 4 m/s at 20 ft with turbulence; `armland COMMAND --wind-trace wind.csv` in a recorded one.
+
 `armland COMMAND --law my_file.py:my_law` controls the held UAV by your own law.
 
 `armland COMMAND --seeds 200` flies 200 seeds over all cores: spread of each figure beside its bound, campaign.json, one page.
@@ -96,10 +98,10 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
 
     hinged = mission_named(mission).start == "hinged"
     name = given["scenario"] or ("paper" if hinged else "landing")
-    loaded = options.load(name, given, hinged)
+    loaded = options.load(name, given)
     if not hinged and "deviation.level" not in loaded.own:
         # What all sources give, unless the user says otherwise: a demonstrator differs from what is believed of it. The log says so.
-        loaded = options.load(name, {**given, "deviation": "published"}, hinged)
+        loaded = options.load(name, {**given, "deviation": "published"})
     tell_arm(loaded, diagnostics())
     tell_uav(loaded, diagnostics())
     console = ready()
