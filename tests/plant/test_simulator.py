@@ -135,7 +135,7 @@ def test_uav_starts_where_it_was_drawn_and_the_arm_at_home(waiting):
 @pytest.mark.parametrize("wind", [2.0, 4.0, 6.5])
 def test_uav_that_has_hovered_for_long_in_a_steady_wind_starts_in_balance(waiting, wind):
     """It leans by atan(c v/W) and knows what translational lift gives its rotors: it stays, but for what its plate makes of it
-    that swings until it is plumb. 6.6 m/s are the most that flies."""
+    that swings until it is plumb. 7.2 m/s are the most that flies."""
     led = waiting(
         air={"wind_mps": wind, "towards_deg": 90.0, "profile": "even"},
         place={"start_speed_mps": 0.0},
