@@ -1,6 +1,8 @@
+from pathlib import Path
+
 import pytest
 
-from armland.cli.options import parse_settings
+from armland.cli.options import load, parse_settings
 from armland.errors import ConfigurationError
 
 
@@ -39,3 +41,17 @@ def test_all_problems_are_named_at_once():
         parse_settings(["title=calm", "seed=2", "place"])
     assert "'title=calm'" in str(refusal.value)
     assert "'place'" in str(refusal.value)
+
+
+def test_wind_is_mean_and_turbulence_and_none_of_both_where_it_is_still():
+    windy, still = (load("landing", {"wind": speed}).air for speed in (8.0, 0.0))
+    assert (windy.wind_mps, windy.turbulence, windy.reference_m) == (8.0, "by_wind", 6.096)
+    assert not still.blows
+
+
+def test_recorded_wind_is_found_where_the_command_is_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "wind.csv").write_text("time_s,x,y,z\n")
+    assert load("landing", {"wind_trace": Path("wind.csv")}).air.trace == str(tmp_path / "wind.csv")
+    with pytest.raises(ConfigurationError, match="leave out wind_mps and turbulence"):
+        load("landing", {"wind_trace": Path("wind.csv"), "wind": 8.0})

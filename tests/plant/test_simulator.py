@@ -132,6 +132,38 @@ def test_uav_starts_where_it_was_drawn_and_the_arm_at_home(waiting):
     assert t["rotor_thrust"].sum() == pytest.approx(led.sim.scene.uav_mass * G)
 
 
+@pytest.mark.parametrize("wind", [2.0, 4.0, 6.5])
+def test_uav_that_has_hovered_for_long_in_a_steady_wind_starts_in_balance(waiting, wind):
+    """It leans by atan(c v/W) and knows what translational lift gives its rotors: it stays, but for what its plate makes of it
+    that swings until it is plumb. 7.2 m/s are the most that flies."""
+    led = waiting(
+        air={"wind_mps": wind, "towards_deg": 90.0, "profile": "even"},
+        place={"start_speed_mps": 0.0},
+        link={"watchdog_ms": 1e4},
+    )
+    s, d = led.sim.scenario, led.sim.data
+    start = d.qpos[led.sim.scene.uav_qpos].copy()
+    lean = np.arctan(s.uav.drag_nspm * wind / (led.sim.scene.uav_mass * 9.81))
+    up = d.xmat[led.sim.scene.uav_body].reshape(3, 3)[:, 2]
+    np.testing.assert_allclose(up, [0.0, -np.sin(lean), np.cos(lean)], atol=1e-9)
+    ticks = led.step(500)["truth"]
+    assert np.abs(d.qpos[led.sim.scene.uav_qpos[:3]] - start[:3]).max() < 4e-3
+    assert np.abs(ticks["v_cm"]).max() < 0.02
+
+
+def test_gusts_and_recorded_wind_reach_the_uav_tick_by_tick(waiting):
+    """Across blocks of noise, and again after `connect`."""
+    gust = {"at_s": 0.2, "peak_mps": 5.0, "length_m": 2.0, "direction": [0.0, 1.0, 0.0]}
+    led = waiting(air={"gusts": [gust]})
+    felt: list = []
+    for _ in range(2):
+        felt.clear()
+        led.step(1500, watch=lambda sim: felt.append(sim.world["kept"]["air"]["velocity"][0].copy()))
+        np.testing.assert_allclose(felt, led.sim.timed_wind[:1500], atol=1e-15)
+        assert np.max(felt) == pytest.approx(5.0)
+        led.sim.connect()
+
+
 def test_hinge_levels_the_uav_whatever_the_arms_pose(hinged):
     t = hinged().step()["truth"][0]
     np.testing.assert_allclose(np.abs(t["quat"]), [1.0, 0.0, 0.0, 0.0], atol=1e-9)

@@ -140,6 +140,12 @@ SHOWN = {"as_json": AS_JSON, "figures": option(bool, "Draw the figures.", "--fig
 FLOWN = {
     "law": LAW,
     "deviation": DEVIATION,
+    "wind": option(
+        float | None, "Mean wind in m/s at 20 ft, with the turbulence that goes with it; see docs/air.md.", min=0.0
+    ),
+    "wind_trace": option(
+        Path | None, "Recorded wind at the UAV instead: CSV with time_s, x, y, z in m/s, world axes.", metavar="FILE"
+    ),
     "seeds": option(int, "Fly this many seeds and print how many succeed.", default=1, min=1, max=1_000_000),
     "jobs": option(int | None, "Flights of a campaign at a time; one per core if absent.", min=1, max=1000),
     **MADE,
@@ -193,7 +199,7 @@ def load(name: str, given: dict[str, Any]) -> "Scenario":
 
     Args:
         name: file, or name of one that comes with armland.
-        given: options of `MADE`, and `DEVIATION` where the command has it.
+        given: options of `MADE`, and `DEVIATION` and those of the wind where the command has them.
 
     Raises:
         ConfigurationError: all that is wrong with it.
@@ -212,6 +218,11 @@ def load(name: str, given: dict[str, Any]) -> "Scenario":
         update(overrides, {"arm": changed})
     if given.get("deviation") is not None:
         update(overrides, {"deviation": {"level": given["deviation"]}})
+    if given.get("wind") is not None:
+        turbulence = {"turbulence": "by_wind"} if given["wind"] > 0.0 else {}
+        update(overrides, {"air": {"wind_mps": float(given["wind"]), **turbulence}})
+    if given.get("wind_trace") is not None:
+        update(overrides, {"air": {"trace": str(given["wind_trace"].resolve())}})
     if given.get("uav") is not None:
         from armland.scenario.files.airframe import find_airframe
 

@@ -19,6 +19,7 @@ from armland.mission.tuning import fitted
 from armland.models.airframe.sizing import sized
 from armland.plant.simulator import Simulator
 from armland.plant.start import check_start
+from armland.plant.wind.limits import check_wind
 from armland.runtime import loops
 from armland.runtime.log import Log
 from armland.runtime.log.columns import columns
@@ -104,6 +105,7 @@ def _prepared(scenario: Scenario, mission: str, law: str | None, experiment: str
         # An experiment sets the UAV's own controller as well.
         scenario = fitted(scenario, made.scenario, made.experiment)
     simulator = Simulator(scenario, made.home, made.mission.start, made.names)
+    check_wind(scenario, simulator.scene.uav_mass, simulator.timed_wind)
     if made.mission.start == "air":
         check_start(scenario, simulator.scene, made.home)
     return Flight(scenario, made, simulator, Controller(made), metadata_of(scenario, made, simulator.scene))

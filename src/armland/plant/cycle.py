@@ -118,7 +118,8 @@ def actuate(k: int, world: Record, views: Views, noise: Noise, phase: int, comma
     link.send(k, told.link, kept.link, kept.faults, noise.link[row], command)
     if k % told.onboard.period == 0:
         onboard.fly(k, world, noise, row, truth)
-    air.blow(told.air, kept.air, kept.faults, noise.air[row], truth)
+    given = noise.air[row], noise.turbulence[row], noise.wind[row]
+    air.blow(told.air, kept.air, kept.faults, given, truth)
     rotors.spin(k, told.rotors, kept.rotors, kept.faults, kept.air, truth, views.xfrc_applied[world.uav])
     if told.magnet.fitted:
         magnet.energise(

@@ -23,6 +23,8 @@ from armland.plant.faults import table as faults
 from armland.plant.noise import BLOCK, Noise, NoiseSource
 from armland.plant.pictures import Photographer, Pictures
 from armland.plant.scene.composition import Scene, build_scene
+from armland.plant.wind.limits import lift_gain, steady_wind
+from armland.plant.wind.timed import timed_wind
 from armland.plant.world import build_world
 from armland.records import MOST_ROTORS, Records, Tick, UavMode, layout
 from armland.rotations import Array, from_rotation_vector, matrix, multiply
@@ -67,7 +69,7 @@ class Simulator:
             self._deviate()
         self.views: Views = views_of(self.scene.model, self.data)
         self.noise_source = NoiseSource(scenario.run.seed, self.scene.joints)
-        self.tick = 0
+        self.tick, self.timed_wind = 0, timed_wind(scenario)
         self._home = np.asarray(home, dtype=float)
         self._applied: Records = np.zeros(1, layout("command", self.scene.joints))
         self._pictures = Pictures(photographer) if photographer is not None else None
@@ -144,24 +146,30 @@ class Simulator:
             told["onboard"]["mass"][0],
             _mean(told["rotors"]["gain"][0, : told["rotors"]["count"][0]]),
         )
-        lift = np.array([0.0, 0.0, weight])
+        lift, pull = np.array([0.0, 0.0, weight]), weight
         if flying and told["air"]["moves"][0]:
             # It has hovered for long: it leans against the wind.
-            lift = lift - told["rotors"]["drag"][0] * told["air"]["mean"][0]
+            wind = told["air"]["mean"][0]
+            if told["air"]["blows"][0]:
+                wind = wind + steady_wind(self.scenario, float(told["air"]["floor"][0] + pivot[2]), self.timed_wind)
+            lift = lift - told["rotors"]["drag"][0] * wind
             quat = attitude_of(lift, drawn.heading)
+            if told["air"]["blows"][0]:
+                gain = lift_gain(told["rotors"][0], float(np.linalg.norm(lift)), wind, matrix(quat)[:, 2])
+                factor, pull = factor * gain, float(np.linalg.norm(lift)) / gain
         d.qpos[s.uav_qpos[:3]] = pivot - matrix(quat) @ s.lever
         d.qpos[s.uav_qpos[3:]] = quat
         # A UAV that hovers knows what its rotors really give.
         needed = weight / (believed * gravity) / factor
         kept["onboard"]["integral"][0, 2] = gravity * (needed - 1.0) + told["onboard"]["trim"][0]
-        if flying and self.deviations:
+        if flying and (self.deviations or told["air"]["blows"][0]):
             # Sideways, too: against the wind, and against what it gets wrong about its own tilt.
             seen = matrix(multiply(told["imu"]["bias"][0], quat))[:, 2]
             kept["onboard"]["integral"][0, :2] = np.linalg.norm(lift) / (believed * factor) * seen[:2]
         kept["link"]["arrived"]["mode"] = UavMode.AUTONOMOUS if flying else UavMode.OFF
         if flying:
             d.qvel[s.uav_dof[:3]] = drawn.velocity
-            self._spin(weight / factor, weight, factor)
+            self._spin(pull / factor, weight, factor)
 
     def _spin(self, asked: float, thrust: float, factor: float = 1.0) -> None:
         # All rotors turn as if they had been asked for `asked` N long ago, and give `thrust` N upwards.
@@ -182,6 +190,9 @@ class Simulator:
     def draw_noise(self) -> None:
         """Draw the next block of noise."""
         self.noise_source.draw()
+        if len(self.timed_wind):
+            ticks = np.arange(self.tick, self.tick + BLOCK)
+            self.noise.wind[:] = self.timed_wind[np.minimum(ticks, len(self.timed_wind) - 1)]
 
     def read(self, tick: Tick) -> None:
         """Fill measurement and truth of `tick`."""

@@ -1,15 +1,20 @@
-"""The world around: gravity, air, a constant disturbance."""
+"""The world around: gravity, air and how it moves, a constant disturbance."""
 
 import math
-from typing import Annotated
+from typing import Annotated, Literal
 
-from pydantic import AfterValidator
+from pydantic import AfterValidator, Field
 
 from armland.scenario import quantities as of
 from armland.scenario.quantities import Section, between, key
 
 LEAST_GRAVITY = 0.1
 """m/s²."""
+
+MOST_MPS = 50.0
+"""Fastest air, m/s, of gusts and recordings: beyond, units or keyboard have slipped."""
+
+Bearing = Annotated[float, between(-360.0, 360.0)]
 
 
 def _gravity(value: of.Acceleration3) -> of.Acceleration3:
@@ -33,3 +38,83 @@ class Disturbance(Section):
 
     force_n: of.Force3 = key((0.0, 0.0, 0.0), "at the centre of mass, world axes")
     torque_nm: of.Torque3 = key((0.0, 0.0, 0.0), "body axes")
+
+
+class Gust(Section):
+    """One gust of the shape ½A(1 − cos 2πx/l), 0 ≤ x ≤ l, carried along by the mean wind. Source: CS-25.341, l = 2H."""
+
+    at_s: of.Seconds = Field(description="time at which it begins")
+    peak_mps: Annotated[float, between(1e-3, MOST_MPS)] = Field(description="A, its largest speed")
+    length_m: Annotated[float, between(0.1, 1000.0)] = Field(
+        description="l, from its begin to its end along the mean wind"
+    )
+    direction: of.Direction | None = key(
+        None,
+        "components of the way it pushes, world, a ratio; along the mean wind if absent; [0, 0, 1] is an updraught",
+    )
+
+    def _contradictions(self) -> list[str]:
+        return (
+            ["direction = [0, 0, 0] points nowhere"] if self.direction is not None and not any(self.direction) else []
+        )
+
+
+class Air(Section):
+    """Wind, of which the controller is told nothing. Its heights are above ground or sea."""
+
+    wind_mps: Annotated[float, between(0.0, 40.0)] = key(0.0, "mean speed at reference_m")
+    reference_m: Annotated[float, between(0.5, 300.0)] = key(
+        6.096, "height of that speed; 20 ft, where MIL-F-8785C measures its W20"
+    )
+    towards_deg: Bearing | None = key(
+        None, "where the wind blows to, from the world's x axis counter-clockwise; drawn for each seed if absent"
+    )
+    profile: Literal["log", "power", "even"] = key(
+        "log", "mean speed over height: ln(h/z0), (h/reference_m)^exponent, or the same everywhere"
+    )
+    roughness_m: Annotated[float, between(1e-5, 3.0)] = key(
+        0.04572, "z0 of `log`; 0.15 ft, MIL-F-8785C for landing; 0.0002 over the open sea"
+    )
+    exponent: Annotated[float, between(0.01, 1.0)] = key(0.143, "of `power`, a ratio; 1/7 over open land")
+    floor_m: Annotated[float, between(0.0, 200.0)] = key(0.0, "height of the world's z = 0 above ground or sea")
+    turbulence: Literal["none", "by_wind", "light", "moderate", "severe"] = key(
+        "none",
+        "Dryden's, MIL-F-8785C at low altitude: as strong as its rule says of this wind, or of W20 = 15, 30 or 45 kt",
+    )
+    gusts: Annotated[tuple[Gust, ...], Field(max_length=20)] = key((), "single gusts on top")
+    trace: of.Text | None = key(
+        None,
+        "recorded wind at the UAV: CSV with time_s, x, y, z in m/s, world axes, in place of mean wind and turbulence",
+    )
+
+    @property
+    def blows(self) -> bool:
+        """Whether there is any wind."""
+        return self.steady or bool(self.gusts) or self.trace is not None
+
+    @property
+    def steady(self) -> bool:
+        """Whether there is mean wind or turbulence."""
+        return self.wind_mps > 0.0 or self.turbulence != "none"
+
+    def _contradictions(self) -> list[str]:
+        found, windy, turbulent = [], self.wind_mps > 0.0, self.turbulence != "none"
+        if self.trace is not None and self.steady:
+            found.append("trace: a recorded wind has mean and turbulence of its own; leave out wind_mps and turbulence")
+        if self.turbulence == "by_wind" and not windy:
+            found.append("turbulence = 'by_wind' is none without wind; say wind_mps = 8, or turbulence = 'light'")
+        if self.profile == "log" and self.reference_m <= self.roughness_m:
+            found.append(f"reference_m = {self.reference_m:g} must be above roughness_m = {self.roughness_m:g}")
+        even, carried = self.profile == "even", any(gust.direction is None for gust in self.gusts)
+        needed: dict[str, tuple[bool, str]] = {
+            "reference_m": (windy and not even, "wind_mps, and a profile over height"),
+            "profile": (windy, "wind_mps"),
+            "roughness_m": (windy and self.profile == "log", "wind_mps and profile = 'log'"),
+            "exponent": (windy and self.profile == "power", "wind_mps and profile = 'power'"),
+            "floor_m": (turbulent or (windy and not even), "wind_mps or turbulence"),
+            "towards_deg": (self.steady or carried, "wind_mps, turbulence, or a gust without a direction of its own"),
+        }
+        for name, (given, what) in needed.items():
+            if not given and getattr(self, name) != type(self).model_fields[name].default:
+                found.append(f"{name} has no effect without {what}")
+        return found

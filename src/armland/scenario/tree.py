@@ -10,7 +10,7 @@ from armland.scenario import quantities as of
 from armland.scenario.arm import Arm, Tool
 from armland.scenario.control import Control, Experiment
 from armland.scenario.deviation import Deviation
-from armland.scenario.environment import Disturbance, Environment
+from armland.scenario.environment import Air, Disturbance, Environment
 from armland.scenario.estimation import Estimation
 from armland.scenario.faults import Fault
 from armland.scenario.gear import Cradle, Hinge, Magnet, Plate, Skids
@@ -39,7 +39,7 @@ HARDWARE = (
 )
 """Sections of which the controller has a belief of its own."""
 
-PLANT_ONLY = ("imperfections", "deviation", "disturbance", "faults")
+PLANT_ONLY = ("imperfections", "deviation", "disturbance", "air", "faults")
 """Sections that the controller never sees."""
 
 
@@ -80,6 +80,7 @@ class Scenario(Section):
     imperfections: Imperfections = Imperfections()
     deviation: Deviation = Deviation()
     disturbance: Disturbance = Disturbance()
+    air: Air = Air()
     control: Control = Control()
     estimation: Estimation = Estimation()
     place: Place = Place()
@@ -202,6 +203,9 @@ def _problems(s: Scenario) -> list[str]:
             divisors = [d for d in range(1, rate + 1) if rate % d == 0]
             near = ", ".join(map(str, sorted(sorted(divisors, key=lambda d: abs(d - device))[:3])))
             problems.append(f"{name} = {device} does not divide run.rate_hz = {rate}; nearest that do: {near}")
+    for i, gust in enumerate(s.air.gusts):
+        if gust.at_s >= s.run.duration_s:
+            problems.append(f"air.gusts.{i}.at_s = {gust.at_s:g} must be below run.duration_s = {s.run.duration_s:g}")
     if not s.uav.file:
         given: dict[str, object] = {
             "uav.mass_kg": s.uav.mass_kg,

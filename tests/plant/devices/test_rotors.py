@@ -95,6 +95,15 @@ def test_switched_off_nothing_is_felt(flying):
     np.testing.assert_array_equal(still, moves)
 
 
+@pytest.mark.parametrize("along", [0.0, 4.8])
+@pytest.mark.parametrize("up", [-2.4, -0.8, 0.8, 2.4])
+def test_air_that_rises_or_falls_acts_by_the_inflow_and_hardly_by_the_body(flying, along, up):
+    """Why the drag is horizontal: the published drag of such a body along z, 0.01 N/(m/s)² (Hummingbird), is below a ninth of it."""
+    felt, level = (moving(flying(drag=0.0), (0, 0, 0), air=(along, 0.0, w))[2] for w in (up, 0.0))
+    assert (felt - level) * up > 0.0
+    assert 0.01 * up**2 < abs(felt - level) / 9.0
+
+
 def test_gust_acts_as_the_air_that_moves_and_not_on_one_that_drifts_along(flying):
     wind = np.array([3.0, -2.0, 0.0])
     gust, air, calm, along = flying(), flying(), flying(), flying()

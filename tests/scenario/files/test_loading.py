@@ -344,3 +344,9 @@ def test_what_was_said_of_one_arm_says_nothing_of_another(tmp_path) -> None:
         assert other.place.catch_m == plain.place.catch_m
     # The same arm again is no other one.
     assert load_scenario("landing", {"arm": {"file": "lwr4.xml"}}).place.home_deg == plain.place.home_deg
+
+
+def test_recorded_wind_is_found_beside_the_scenario(tmp_path):
+    (tmp_path / "wind.csv").write_text("time_s,x,y,z\n")
+    (tmp_path / "windy.toml").write_text("base = 'landing'\n[air]\ntrace = 'wind.csv'\n")
+    assert load_scenario(tmp_path / "windy.toml").air.trace == str(tmp_path / "wind.csv")

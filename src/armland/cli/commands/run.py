@@ -35,6 +35,8 @@ same keys does in a scenario's file.
 
 `armland COMMAND --uav x500` lands another UAV, one that comes with armland or your own as a file; `armland uav x500` says what of it.
 
+`armland COMMAND --wind 4` flies in wind of 4 m/s at 20 ft with turbulence; `armland COMMAND --wind-trace wind.csv` in a recorded one.
+
 `armland COMMAND --law my_file.py:my_law` controls the held UAV by your own law.
 
 `armland COMMAND --seeds 200` flies 200 seeds over all cores: spread of each figure beside its bound, campaign.json, one page.

@@ -14,7 +14,19 @@ SHARED = (
 """Keys of the hardware and of what every controller does."""
 
 GEAR = (
-    *("plate", "magnet", "skids", "cradle", "camera", "imperfections", "deviation", "bounds", "estimation", "limits"),
+    *(
+        "plate",
+        "magnet",
+        "skids",
+        "cradle",
+        "camera",
+        "imperfections",
+        "deviation",
+        "air",
+        "bounds",
+        "estimation",
+        "limits",
+    ),
     *_of("control", "approach station thrust"),
     *_of("place", "catch_m put_down_m home_deg wait_below_m standoff_m above_m search_m withdraw_m"),
     *_of("place", "start_offset_m start_above_m start_speed_mps start_heading_deg"),

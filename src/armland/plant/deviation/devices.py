@@ -148,7 +148,7 @@ def _air(values: Values, scenario: Scenario, told: Records) -> None:
     # The tool meets the wake's pressure, which is the thrust over the area of the discs.
     area = rotor_count(scenario) * rotors.radius_m**2
     told["wash"] = value(values, "air.downwash") * min(DISCS_M2 / area, 1.0)
-    told["moves"] = bool(wind or gust or told["ground"][0])
+    told["moves"] |= bool(wind or gust or told["ground"][0])
 
 
 def _ticks(milliseconds: float, rate_hz: int) -> int:

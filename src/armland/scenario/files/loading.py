@@ -174,6 +174,7 @@ def _resolve_files(data: dict[str, Any], folder: Path) -> None:
     for tables in (data, belief):
         for section in ("arm", "uav"):
             _absolute(tables, section, "file", folder)
+    _absolute(data, "air", "trace", folder)
     _absolute(data, "control", "law", folder)
     for name in experiments if isinstance(experiments, dict) else ():
         _absolute(experiments, name, "law", folder)
