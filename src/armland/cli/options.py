@@ -122,8 +122,8 @@ ARM = {
 
 UAV = option(
     str | None,
-    "Another UAV: a TOML, MJCF or URDF file, or the name of one that comes with armland (crazyflie, ardrone2, ardrone2_bench, pelican, x500, "
-    "neo11, m690, hexa10, octo25).",
+    "Another UAV: a TOML, MJCF or URDF file, or the name of one that comes with armland (crazyflie, ardrone2, "
+    "ardrone2_bench, pelican, x500, neo11, m690, hexa10, octo25).",
     metavar="FILE|NAME",
 )
 
