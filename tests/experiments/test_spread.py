@@ -70,9 +70,9 @@ def test_bias_of_the_landing_takes_the_better_z_away(reproduced, paper_scenario)
 
 
 def test_demonstrator_from_data_misses_both_published_angles(from_data):
-    """What comes out, not what was hoped for: E1 half as far as published, and E2 not less but more than twice as far as E1."""
+    """What comes out, not what was hoped for: E1 two thirds as far as published, and E2 not less but more than twice as far as E1."""
     outcome = from_data()
-    assert outcome.metrics["E1"].attitude_max_deg == pytest.approx(4.77, abs=0.02)
+    assert outcome.metrics["E1"].attitude_max_deg == pytest.approx(5.98, abs=0.02)
     assert outcome.metrics["E2"].attitude_max_deg > 2.0 * outcome.metrics["E1"].attitude_max_deg
     failed = {v.claim.partition(" in")[0] for v in outcome.verdicts if not v.holds}
     assert failed >= {"E1 deviates up to 9.2°", "E2 deviates up to 6.8°"}

@@ -73,7 +73,7 @@ def test_what_is_kept_does_not_move():
 
 
 def test_an_arm_too_weak_has_no_place():
-    weak = bench(arm={"torque_limits_nm": [20.0] * 7})
+    weak = bench(arm={"torque_limits_nm": [2.0] * 7})
     assert [p for some in places(weak, EVERYTHING) for p in some] == []
 
 

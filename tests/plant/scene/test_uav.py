@@ -96,7 +96,7 @@ def test_shapes_weigh_nothing(paper):
 def test_uav_file_without_its_sites_is_refused_by_their_names(paper, tmp_path):
     path = tmp_path / "uav.xml"
     path.write_text(UAV.replace('name="pivot"', 'name="foot"').replace('name="rotor_3"', 'name="r3"'), encoding="utf-8")
-    with pytest.raises(ModelError, match="lacks pivot, rotor_3"):
+    with pytest.raises(ModelError, match="rotor 1, 2, 4; it lacks 3"):
         build_scene(paper(uav={"file": str(path)}), "hinged")
 
 

@@ -68,7 +68,7 @@ SPOILT = {
     ),
     "unknown section": (
         appended("[armm]\nfile = 'x'"),
-        ["armm: unknown key; known here: airframe, arm, belief, bounds, calibration"],
+        ["armm: unknown key; known here: air, airframe, arm, belief, bounds, calibration"],
     ),
     "number with a unit": (
         appended('[link]\nwatchdog_ms = "30 ms"'),
