@@ -33,6 +33,7 @@ def moved(six_axis):
     return prepare(six_axis, "landing")
 
 
+@pytest.mark.slow
 def test_foreign_arm_lands_where_it_can_and_says_why(moved):
     place = moved.scenario.place
     assert moved.moved.startswith(f"place.catch_m = {list(place.catch_m)} with place.put_down_m = ")
@@ -41,6 +42,7 @@ def test_foreign_arm_lands_where_it_can_and_says_why(moved):
     assert not np.allclose(place.catch_m, (0.62, 0.0, 0.86))
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_what_was_found_is_flown(moved):
     assert fly_prepared(moved).result["success"]

@@ -44,6 +44,7 @@ def test_refusal_names_the_nearest_place_and_it_works(too_high):
     assert plan(works, "landing").mission.name == "landing"
 
 
+@pytest.mark.slow
 def test_refusal_of_an_arm_that_can_land_nowhere_says_so():
     weak = load_scenario("landing", {"arm": {"torque_limits_nm": [2.0] * 7}})
     told = str(refused(weak, LANDING, WorkspaceError("joint A2 is too weak")))
