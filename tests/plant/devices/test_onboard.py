@@ -1,5 +1,6 @@
 """The UAV on board: modes, its watchdog, its own hover, and the rotors that it stops."""
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -25,6 +26,24 @@ def test_told_to_it_hovers_a_step_aside(waiting):
     assert np.linalg.norm(moved[:2]) == pytest.approx(0.3, abs=0.1)
     assert moved[0] > 0.2
     assert moved[2] == pytest.approx(0.2, abs=0.08)
+
+
+@pytest.mark.parametrize(("turn", "left"), [(0.2, 0.0), (2.5, 2.15), (-2.5, 2.15)])
+def test_spun_by_a_knock_it_keeps_the_heading_that_it_has_come_to(waiting, turn, left):
+    """A small turn is turned back; after a large one the rotors level it first, and it does not sink meanwhile."""
+    led = waiting()
+    led.step(1000)
+    data, scene, turned = led.sim.data, led.sim.scene, np.empty(4)
+    mujoco.mju_mulQuat(
+        turned, np.array([np.cos(0.5 * turn), 0.0, 0.0, np.sin(0.5 * turn)]), data.qpos[scene.uav_qpos[3:]]
+    )
+    data.qpos[scene.uav_qpos[3:]] = turned
+    data.qvel[scene.uav_dof[:2]] = 1.0, -0.5
+    truth = led.step(3000)["truth"]
+    heading = 2.0 * np.arctan2(truth["quat"][:, 3], truth["quat"][:, 0])
+    off = heading[-1] - heading[0]
+    assert np.ptp(truth["r"][:, 2]) < 0.15
+    assert abs(np.arctan2(np.sin(off), np.cos(off))) == pytest.approx(left, abs=0.02)
 
 
 def test_guided_it_does_as_told(waiting):

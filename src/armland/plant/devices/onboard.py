@@ -28,6 +28,9 @@ from armland.scenario import Scenario
 SPEED_CORRELATED_S = 0.3
 """Correlation time of the error of its own velocity. Assumption: optical flow over moving light and shade."""
 
+HEADING_HELD = 0.35
+"""Farthest from its present heading, rad, that it hovers by itself towards. Assumption: as autopilots that level a UAV first."""
+
 AUTONOMOUS, GUIDED, HELD, CAUGHT = UavMode.AUTONOMOUS, UavMode.GUIDED, UavMode.HELD, UavMode.CAUGHT
 LANDED, OFF, HINGED = UavMode.LANDED, UavMode.OFF, UavMode.HINGED
 
@@ -184,6 +187,14 @@ def _watch(mode: int, p: Record, s: Record, rotors: Record) -> bool:
 
 
 @njit(cache=True)
+def _near(heading: float, present: float) -> float:
+    # After a knock that spins it, a UAV keeps the heading that it has come to: turning back by a quarter turn would take from the
+    # rotors what levels it.
+    off = np.arctan2(np.sin(heading - present), np.cos(heading - present))
+    return heading if abs(off) <= HEADING_HELD else present + (HEADING_HELD if off > 0.0 else -HEADING_HELD)
+
+
+@njit(cache=True)
 def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float, told: bool) -> Array:
     # Own position estimate: the true one and white noise, in the UAV's own idea of the axes; own velocity: the true one, a bias, and
     # noise that is correlated. Where the ground has told it to hover by itself, it takes the step that it was told.
@@ -194,6 +205,7 @@ def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float, t
         s.heading = 2.0 * np.arctan2(quat[3], quat[0])
         for i in range(3):
             s.anchor[i] = t.r_cm[i] + (climb if i == 2 else 0.0)
+    s.heading = _near(s.heading, 2.0 * np.arctan2(quat[3], quat[0]))
     own = 2.0 * np.arctan2(bias[3], bias[0])
     c, d, e = np.cos(own), np.sin(own), np.empty(3)
     for i in range(3):
