@@ -3,10 +3,20 @@
 Everything heavy is imported where it is asked for: most tests need none of it.
 """
 
+import sys
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
+
+
+class Done(NamedTuple):
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
 
 
 class ForwardDynamics:
@@ -47,6 +57,22 @@ class ForwardDynamics:
         M = M + np.triu(M, 1).T
         J = self.jacobian(q)
         return J @ np.linalg.solve(M, J.T)
+
+
+@pytest.fixture
+def armland(tmp_path, monkeypatch, capsys):
+    """Run the command in this process, in a folder of its own."""
+    from armland.cli import main
+
+    monkeypatch.chdir(tmp_path)
+
+    def call(*args: str) -> Done:
+        monkeypatch.setattr(sys, "argv", ["armland", *args])
+        with pytest.raises(SystemExit) as end:
+            main()
+        return Done(int(end.value.code or 0), *capsys.readouterr())
+
+    return call
 
 
 @pytest.fixture(scope="session")

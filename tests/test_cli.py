@@ -1,10 +1,12 @@
-"""The command line: exit codes, one readable message, nothing half-written."""
+"""The command line: exit codes, one readable message, nothing half-written; in a process of its own where that matters."""
 
 import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,7 +16,11 @@ PAPER = (SCENARIOS / "paper.toml").read_text(encoding="utf-8")
 CALIBRATION = (SCENARIOS / "calibration.toml").read_text(encoding="utf-8")
 
 
-def armland(*args: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+Call = Callable[..., Any]
+"""The command in this process: see the fixture `armland`."""
+
+
+def process(*args: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
     call = [sys.executable, "-m", "armland", *args]
     return subprocess.run(call, capture_output=True, text=True, cwd=cwd, timeout=300, env=os.environ | environment)
 
@@ -28,7 +34,7 @@ def shell(command: str, cwd: Path, **environment: str) -> subprocess.CompletedPr
 
 
 def test_paper_json_is_alone_on_standard_output(tmp_path: Path) -> None:
-    done = armland("paper", "--json", "--no-figures", "--out", str(tmp_path / "out"))
+    done = process("paper", "--json", "--no-figures", "--out", str(tmp_path / "out"))
     assert done.returncode == 0, done.stderr
     result = json.loads(done.stdout)
     assert set(result) == {"experiments", "published", "verdicts", "run"}
@@ -47,12 +53,12 @@ def test_paper_json_is_alone_on_standard_output(tmp_path: Path) -> None:
     assert sorted(p.name for p in (tmp_path / "out").glob("*.mcap")) == ["E1.mcap", "E2.mcap", "E3.mcap"]
 
 
-def test_a_failed_verdict_is_exit_code_1(tmp_path: Path) -> None:
+def test_a_failed_verdict_is_exit_code_1(armland: Call, tmp_path: Path) -> None:
     (tmp_path / "weak.toml").write_text(PAPER.replace('extra_torque = "full"', 'extra_torque = "none"'))
     (tmp_path / "calibration.toml").write_text(CALIBRATION)
-    done = armland("paper", "--scenario", "weak.toml", "--no-figures", "--json", cwd=tmp_path)
-    assert done.returncode == 1, done.stderr
-    assert not all(v["holds"] for v in json.loads(done.stdout)["verdicts"])
+    done = armland("paper", "--scenario", "weak.toml", "--no-figures", "--json")
+    assert done.code == 1, done.err
+    assert not all(v["holds"] for v in json.loads(done.out)["verdicts"])
 
 
 URDF = """<robot name="r"><link name="base"/>
@@ -109,7 +115,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_bad_scenario_is_one_message_exit_code_2_and_nothing_written(name: str, tmp_path: Path) -> None:
+def test_bad_scenario_is_one_message_exit_code_2_and_nothing_written(armland: Call, name: str, tmp_path: Path) -> None:
     tail, changes, calibration, words = BAD[name]
     text = PAPER
     for old, new in changes.items():
@@ -117,12 +123,12 @@ def test_bad_scenario_is_one_message_exit_code_2_and_nothing_written(name: str, 
         text = text.replace(old, new)
     (tmp_path / "bad.toml").write_text(text + tail)
     (tmp_path / "calibration.toml").write_text(CALIBRATION.replace(*calibration) if calibration else CALIBRATION)
-    done = armland("paper", "--scenario", "bad.toml", "--out", "out", cwd=tmp_path)
-    assert done.returncode == 2, (done.stdout, done.stderr)
+    done = armland("paper", "--scenario", "bad.toml", "--out", "out")
+    assert done.code == 2, (done.out, done.err)
     for word in words:
-        assert word in done.stderr
-    assert "Traceback" not in done.stderr
-    assert sum(line.startswith("armland: ") for line in done.stderr.splitlines()) == 1
+        assert word in done.err
+    assert "Traceback" not in done.err
+    assert sum(line.startswith("armland: ") for line in done.err.splitlines()) == 1
     assert not (tmp_path / "out").exists()
     assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
 
@@ -143,37 +149,39 @@ def test_bad_scenario_is_one_message_exit_code_2_and_nothing_written(name: str, 
         (("--spread", "1"), ["--spread"]),
     ],
 )
-def test_bad_option_is_one_message_and_exit_code_2(args: tuple[str, ...], words: list[str], tmp_path: Path) -> None:
+def test_bad_option_is_one_message_and_exit_code_2(
+    armland: Call, args: tuple[str, ...], words: list[str], tmp_path: Path
+) -> None:
     (tmp_path / "short.urdf").write_text(URDF)
     (tmp_path / "torn.urdf").write_text(URDF[:-20])
-    done = armland("paper", *args, cwd=tmp_path)
-    assert done.returncode == 2, (done.stdout, done.stderr)
+    done = armland("paper", *args)
+    assert done.code == 2, (done.out, done.err)
     for word in words:
-        assert word in done.stderr
-    assert "Traceback" not in done.stderr
+        assert word in done.err
+    assert "Traceback" not in done.err
     assert not (tmp_path / "out").exists()
 
 
-def test_out_that_cannot_be_a_folder(tmp_path: Path) -> None:
+def test_out_that_cannot_be_a_folder(armland: Call, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     done = armland("paper", "--out", str(tmp_path / "file" / "sub"))
-    assert done.returncode == 2
-    assert "--out" in done.stderr
-    assert "Traceback" not in done.stderr
+    assert done.code == 2
+    assert "--out" in done.err
+    assert "Traceback" not in done.err
 
 
 ASCII = {"PYTHONIOENCODING": "ascii", "LANG": "C"}
 
 
 def test_ascii_terminal_gets_words(tmp_path: Path) -> None:
-    done = armland("gains", cwd=tmp_path, **ASCII)
+    done = process("gains", cwd=tmp_path, **ASCII)
     assert done.returncode == 0, done.stderr
     assert "Margins" in done.stdout
     assert done.stdout.isascii()
     assert "phase [ deg]" in done.stdout
-    help_text = armland("land", "--help", cwd=tmp_path, **ASCII)
+    help_text = process("land", "--help", cwd=tmp_path, **ASCII)
     assert (help_text.returncode, help_text.stderr) == (0, "")
-    assert json.loads(armland("schema", cwd=tmp_path, **ASCII).stdout)
+    assert json.loads(process("schema", cwd=tmp_path, **ASCII).stdout)
 
 
 def test_closed_pipe_is_no_error(tmp_path: Path) -> None:
@@ -192,7 +200,7 @@ def test_full_disk_is_said(tmp_path: Path) -> None:
 
 def test_nothing_is_left_in_the_working_directory(tmp_path: Path) -> None:
     for args in (("--version",), ("gains",), ("land", "nowhere.toml")):
-        armland(*args, cwd=tmp_path)
+        process(*args, cwd=tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -204,32 +212,32 @@ def test_importing_armland_imports_nothing_heavy() -> None:
     assert done.stdout == "[]\n"
 
 
-def test_schema_is_json_and_help_has_examples() -> None:
+def test_schema_is_json_and_help_has_examples(armland: Call) -> None:
     done = armland("schema")
-    assert done.returncode == 0
-    assert "trajectory" in json.loads(done.stdout)["properties"]
-    help_text = armland("paper", "--help").stdout
+    assert done.code == 0
+    assert "trajectory" in json.loads(done.out)["properties"]
+    help_text = armland("paper", "--help").out
     assert "Examples" in help_text
     assert "--arm" in help_text
 
 
 @pytest.mark.parametrize("arm", ["seven_axis.urdf", pytest.param("six_axis.urdf", marks=pytest.mark.slow)])
-def test_another_arm_takes_the_lwr_s_place(arm: str, tmp_path: Path) -> None:
+def test_another_arm_takes_the_lwr_s_place(armland: Call, arm: str, tmp_path: Path) -> None:
     file = Path(__file__).parents[1] / "examples" / arm
     done = armland("paper", "--arm", str(file), "--ee", "tool0", "--json", "--no-figures", "--out", str(tmp_path))
-    assert done.returncode in (0, 1), done.stderr
-    experiments = json.loads(done.stdout)["experiments"]
+    assert done.code in (0, 1), done.err
+    experiments = json.loads(done.out)["experiments"]
     assert max(experiments["E3"]["position_max_m"]) < 0.05
 
 
-def test_gains_by_rule_are_printed_with_their_margins() -> None:
+def test_gains_by_rule_are_printed_with_their_margins(armland: Call) -> None:
     done = armland("gains", "--json")
-    assert done.returncode == 0, done.stderr
-    data = json.loads(done.stdout)
+    assert done.code == 0, done.err
+    data = json.loads(done.out)
     assert set(data) == {"gains", "onboard", "margins"}
     assert set(data["margins"]) == {"position", "roll", "pitch", "yaw"}
     assert 0.0 < data["margins"]["roll"]["delay"] < 0.1
-    assert "Margins" in armland("gains").stdout
+    assert "Margins" in armland("gains").out
 
 
 @pytest.mark.parametrize(
@@ -245,42 +253,44 @@ def test_gains_by_rule_are_printed_with_their_margins() -> None:
         (("--scenario", "nowhere"), ["does not exist"]),
     ],
 )
-def test_infeasible_gains_are_refused_with_what_would_work(args: tuple[str, ...], words: list[str]) -> None:
+def test_infeasible_gains_are_refused_with_what_would_work(
+    armland: Call, args: tuple[str, ...], words: list[str]
+) -> None:
     done = armland("gains", *args)
-    assert done.returncode == 2, (done.stdout, done.stderr)
+    assert done.code == 2, (done.out, done.err)
     for word in words:
-        assert word in done.stderr
-    assert "Traceback" not in done.stderr
+        assert word in done.err
+    assert "Traceback" not in done.err
 
 
-def test_verify_runs_the_proof(tmp_path: Path) -> None:
-    done = armland("verify", "--samples", "50", "--json", "--no-figures", "--out", str(tmp_path / "out"))
-    assert done.returncode == 0, done.stderr
-    result = json.loads(done.stdout)
+def test_verify_runs_the_proof(armland: Call, tmp_path: Path) -> None:
+    done = armland("verify", "--samples", "10", "--json", "--no-figures", "--out", str(tmp_path / "out"))
+    assert done.code == 0, done.err
+    result = json.loads(done.out)
     assert {"subsystem", "demonstrator", "verdicts"} <= set(result)
     assert all(v["holds"] for v in result["verdicts"])
     assert (tmp_path / "out" / "proof_E3.csv").is_file()
 
 
 @pytest.mark.parametrize("args", [("--samples", "0"), ("--scenario", "nowhere"), ("--seed", "-4")])
-def test_verify_refuses_bad_input(args: tuple[str, ...], tmp_path: Path) -> None:
-    done = armland("verify", *args, cwd=tmp_path)
-    assert done.returncode == 2
-    assert "Traceback" not in done.stderr
+def test_verify_refuses_bad_input(armland: Call, args: tuple[str, ...], tmp_path: Path) -> None:
+    done = armland("verify", *args)
+    assert done.code == 2
+    assert "Traceback" not in done.err
     assert not (tmp_path / "out").exists()
 
 
-def test_takeoff_weight_by_theory_alone(tmp_path: Path) -> None:
+def test_takeoff_weight_by_theory_alone(armland: Call, tmp_path: Path) -> None:
     done = armland("takeoff-weight", "--no-flights", "--json", "--no-figures", "--out", str(tmp_path / "out"))
-    assert done.returncode == 0, done.stderr
-    result = json.loads(done.stdout)
+    assert done.code == 0, done.err
+    result = json.loads(done.out)
     assert {"arm_speed_mps", "sustained", "thrown", "speed_for_gain", "flights", "verdict"} <= set(result)
     assert json.loads((tmp_path / "out" / "takeoff_weight.json").read_text()) == result
 
 
-def test_takeoff_weight_refuses_bad_input(tmp_path: Path) -> None:
+def test_takeoff_weight_refuses_bad_input(armland: Call, tmp_path: Path) -> None:
     (tmp_path / "far.toml").write_text('base = "landing"\n[place]\nlaunch_m = [1.5, 0.0, 0.9]\n')
-    done = armland("takeoff-weight", "far.toml", "--no-flights", cwd=tmp_path)
-    assert done.returncode == 2, done.stderr
-    assert "out of reach" in done.stderr
-    assert "Traceback" not in done.stderr
+    done = armland("takeoff-weight", "far.toml", "--no-flights")
+    assert done.code == 2, done.err
+    assert "out of reach" in done.err
+    assert "Traceback" not in done.err
