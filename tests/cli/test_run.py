@@ -301,7 +301,10 @@ def infinite(q, omega, r, v, reference, thrust, tau_att, uav, gains):
 """
 
 
-@pytest.mark.parametrize(("law", "words"), [("raising", ["raised", "ValueError", "too far"]), ("infinite", ["tick"])])
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [("raising", ["raised", "ValueError", "too far"]), pytest.param("infinite", ["tick"], marks=pytest.mark.slow)],
+)
 def test_law_that_fails_in_flight_ends_in_a_safe_state_and_is_named(armland, tmp_path, law, words):
     (tmp_path / "bad.py").write_text(BAD_LAWS)
     done = armland("run", "E3", "--law", f"bad.py:{law}", "--no-figures", "--json", "--out", "out")

@@ -46,7 +46,7 @@ def test_whole_cache_is_used(module: Path) -> None:
     assert run(module) == (0, "4.0 1")
 
 
-@pytest.mark.parametrize(("suffix", "share"), [("nbi", 0.5), ("nbc", 0.0)])
+@pytest.mark.parametrize(("suffix", "share"), [pytest.param("nbi", 0.5, marks=pytest.mark.slow), ("nbc", 0.0)])
 def test_torn_file_is_compiled_again(module: Path, suffix: str, share: float) -> None:
     run(module)
     (file,) = (module / "__pycache__").glob(f"*.{suffix}")

@@ -48,6 +48,7 @@ def test_what_was_found_is_flown(moved):
     assert fly_prepared(moved).result["success"]
 
 
+@pytest.mark.slow
 def test_two_places_that_the_user_set_are_refused_with_others(six_axis):
     wanted = {"place": {"catch_m": [0.62, 0.0, 0.86], "put_down_m": [0.68, 0.0, 0.701]}}
     his = load_scenario("landing", {"arm": six_axis.arm.model_dump(), "place": {**wanted["place"], "home_deg": None}})
@@ -55,6 +56,7 @@ def test_two_places_that_the_user_set_are_refused_with_others(six_axis):
         prepare(his, "landing")
 
 
+@pytest.mark.slow
 def test_places_at_which_the_plant_objects_are_passed_over(six_axis):
     tried = []
 

@@ -68,7 +68,9 @@ def test_noticed_changes_die_and_the_others_are_named(tree) -> None:
     assert (tree / "src/armland/control/made_up.py").read_text() == CODE
 
 
-@pytest.mark.parametrize("wrong", [[], ["control/made_up.py:force: a - b -> (a + b)"]])
+@pytest.mark.parametrize(
+    "wrong", [pytest.param([], marks=pytest.mark.slow), ["control/made_up.py:force: a - b -> (a + b)"]]
+)
 def test_listed_equivalents_are_no_survivors_and_must_not_be_noticed(tree, wrong) -> None:
     (tree / "tests/control/test_made_up.py").write_text(STRICT)
     (tree / "tools/equivalents.toml").write_text(listed(*(f"{IDLE}{new}" for new in ("(a - 0.0)", "a", "0.0")), *wrong))

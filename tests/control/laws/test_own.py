@@ -107,10 +107,10 @@ def test_plain_law_may_be_called_from_any_thread(file, arguments):
     [
         ("low", RAISED, r"failed at tick 1234: it raised ValueError: too low"),
         ("plainly_low", RAISED, r"raised ValueError: too low"),
-        ("beyond", RAISED, r"raised IndexError"),
+        pytest.param("beyond", RAISED, r"raised IndexError", marks=pytest.mark.slow),
         ("holes", NOT_FINITE, r"returned force\[1\] = nan, force\[2\] = inf; every number must be finite"),
-        ("short", SHAPE, r"must return delta_tau and force, each three numbers"),
-        ("nothing", RAISED, r"raised TypeError: cannot unpack"),
+        pytest.param("short", SHAPE, r"must return delta_tau and force, each three numbers", marks=pytest.mark.slow),
+        pytest.param("nothing", RAISED, r"raised TypeError: cannot unpack", marks=pytest.mark.slow),
     ],
 )
 def test_a_law_that_fails_gives_a_status_and_words(file, arguments, capfd, name, status, says):

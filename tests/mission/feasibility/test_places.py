@@ -72,6 +72,7 @@ def test_what_is_kept_does_not_move():
         assert [p.catch.tolist() for p in kept] == [pytest.approx([0.62, 0.0, 0.86])]
 
 
+@pytest.mark.slow
 def test_an_arm_too_weak_has_no_place():
     weak = bench(arm={"torque_limits_nm": [2.0] * 7})
     assert [p for some in places(weak, EVERYTHING) for p in some] == []

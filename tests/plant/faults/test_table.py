@@ -156,7 +156,11 @@ def test_fault_of_a_device_that_is_not_there_is_refused(hinged, fault):
 
 @pytest.mark.parametrize(
     ("file", "link"),
-    [("lwr4.xml", "arm/link_4"), (EXAMPLES / "six_axis.urdf", "arm/link_3"), (ARMS / "eight_axis.xml", "arm/forearm")],
+    [
+        ("lwr4.xml", "arm/link_4"),
+        (EXAMPLES / "six_axis.urdf", "arm/link_3"),
+        pytest.param(ARMS / "eight_axis.xml", "arm/forearm", marks=pytest.mark.slow),
+    ],
 )
 def test_elbow_is_pushed_where_the_arm_bends(file, link):
     """The link behind the joint between upper arm and forearm, whatever its number: of six joints the third, of eight the fifth."""

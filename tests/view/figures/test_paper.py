@@ -50,6 +50,7 @@ def test_every_figure_is_written_as_pdf_and_png(files, figures) -> None:
             assert file.read_bytes().startswith(b"%PDF")
 
 
+@pytest.mark.slow
 def test_same_runs_give_the_same_bytes(files, runs, tmp_path) -> None:
     again = draw_paper_figures(tmp_path, runs)
     assert [f.name for f in files if f.read_bytes() != (tmp_path / f.name).read_bytes()] == []
