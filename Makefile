@@ -28,7 +28,7 @@ run: $(STAMP) ## land a UAV; ARGS is passed to `armland land`
 test: $(STAMP) ## run the checks: ruff, mypy, pytest without the slow tests; ARGS is passed to pytest
 	.venv/bin/ruff check .
 	.venv/bin/ruff format --check .
-	.venv/bin/mypy
+	.venv/bin/mypy --num-workers 2
 	@# In two processes, before two workers of pytest compile the same.
 	@.venv/bin/python -c 'from armland.cli.console import ready; ready()'
 	$(PYTEST) -m 'not slow' $(ARGS)
