@@ -25,6 +25,8 @@ from numba.core import cgutils
 from numba.core.errors import TypingError
 from numba.core.extending import _Intrinsic
 
+from armland.records import MESSAGES, head_layout
+
 VECTOR = types.Array(types.float64, 1, "C")
 MATRIX = types.Array(types.float64, 2, "C")
 """Numba's types of float64 arrays (k,) and (k, m), C-contiguous."""
@@ -38,6 +40,11 @@ def record(layout: np.dtype) -> Any:
     return from_dtype(layout)
 
 
+def heads(*messages: str) -> tuple[Any, ...]:
+    """Numba's types of the `head` of `messages`."""
+    return tuple(record(head_layout(message)) for message in messages)
+
+
 LAYOUTS: dict[str, Callable[[int], np.dtype]] = {}
 """Layouts by name and number of joints, of records that are composed behind the functions that take them."""
 
@@ -46,6 +53,43 @@ def named(name: str, joints: int) -> Any:
     """Numba's type of one record of the layout `name` in `LAYOUTS`, for an arm with `joints` joints."""
     return record(LAYOUTS[name](joints))
 
+
+NAMES = {tuple(field.name for field in fields): name for name, fields in MESSAGES.items()}
+"""Messages by their fields."""
+
+
+class Head(_Intrinsic):  # type: ignore[misc]
+    """The fields of a message that are the same for every arm, as one record; from Python the message itself.
+
+    What takes no more than these is compiled once, and not anew for each number of joints.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("head", _head)
+        self._register()
+
+    def __call__(self, message: Any) -> Any:
+        """The message."""
+        return message
+
+    def _reduce_states(self) -> dict[str, str]:
+        return {}
+
+    @classmethod
+    def _rebuild(cls) -> "Head":  # type: ignore[override]
+        return head
+
+
+def _head(typing: Any, message: Any) -> Any:
+    (kind,) = heads(NAMES[tuple(message.fields)])
+
+    def build(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return builder.bitcast(values[0], context.get_value_type(kind))
+
+    return kind(message), build
+
+
+head = Head()
 
 LINKED: list["Linked"] = []
 """All linked functions of the modules that are imported."""

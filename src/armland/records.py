@@ -55,8 +55,6 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("camera_fresh", (), "1", "-", "1 where a camera sample arrived in this tick", "i8"),
         Field("camera_capture", (), "ticks", "-", "tick of that sample's exposure", "i8"),
         Field("magnet_fault", (), "1", "-", "1 where the coil's current did not rise as it should", "i8"),
-        Field("q", ("n",), "rad", "joint", "joint positions"),
-        Field("qd", ("n",), "rad/s", "joint", "joint velocities"),
         Field("wrench", (6,), "N, N·m", "sensor", "force, torque of the flange on the tool at the sensor's origin"),
         Field("uav_quat", (4,), "1", "UAV's W<-B", "attitude as the UAV knows it, scalar first"),
         Field("uav_rate", (3,), "rad/s", "B", "UAV angular velocity"),
@@ -66,6 +64,8 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("camera_quat", (4,), "1", "camera<-marker", "marker's attitude, scalar first"),
         Field("camera_sigma", (6,), "m, rad", "camera", "claimed standard deviations"),
         Field("magnet_force", (), "N", "-", "force in contact that the coil's current promises"),
+        Field("q", ("n",), "rad", "joint", "joint positions"),
+        Field("qd", ("n",), "rad/s", "joint", "joint velocities"),
     ),
     "estimate": (
         TICK,
@@ -111,13 +111,13 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("uav_mode", (), "1", "-", "see `UavMode`", "i8"),
         Field("magnet", (), "1", "-", "0 off, 1 on, 2 self-test", "i8"),
         Field("brake", (), "1", "-", "1 where the arm's brakes shall be on", "i8"),
-        Field("tau", ("n",), "N·m", "joint", "joint torques"),
         Field("uav_quat", (4,), "1", "UAV's W<-B", "attitude set-point, scalar first"),
         Field("delta_tau", (3,), "N·m", "B", "torque Δτ_att asked of the UAV beyond its attitude controller"),
         Field("thrust", (), "N", "B", "total thrust f_T asked of the UAV"),
         Field("uav_step", (3,), "m", "UAV's W", "from where it began to hover by itself to where it shall hover"),
         Field("force", (3,), "N", "D", "force F_EE that the law wants the end effector to put on the UAV"),
         Field("torque", (3,), "N·m", "D", "orientation torque of the end effector"),
+        Field("tau", ("n",), "N·m", "joint", "joint torques"),
     ),
     "health": (
         TICK,
@@ -183,6 +183,18 @@ def layout(message: str, joints: int) -> np.dtype:
         shape = tuple(joints if s == "n" else int(s) for s in f.shape)
         spec.append((f.name, f.type, shape) if shape else (f.name, f.type))
     return np.dtype(spec)
+
+
+@lru_cache
+def head_layout(message: str) -> np.dtype:
+    """The dtype of the fields of one message that are the same for every arm: they come first, those per joint last.
+
+    Raises:
+        KeyError: unknown message.
+    """
+    one, other = layout(message, 1), layout(message, 2)
+    same = [name for name in one.names or () if one[name] == other[name]]
+    return np.dtype([(name, one[name]) for name in same])
 
 
 @lru_cache

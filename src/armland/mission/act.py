@@ -22,7 +22,7 @@ from armland.control.laws.realisation import told_layout as realisation_told
 from armland.control.laws.table import end_effector_acceleration, held_law, held_lyapunov
 from armland.control.laws.table import kept_layout as law_kept
 from armland.control.laws.table import told_layout as law_told
-from armland.linking import MATRIX, linked, named
+from armland.linking import MATRIX, head, linked, named
 from armland.mission.estimate import RING
 from armland.mission.load import observe
 from armland.mission.reference.moves import BALANCE, BRAKE
@@ -109,7 +109,7 @@ def prove(held: bool, b: Record) -> None:
     """V₂, J, and the rate, W, that the law in use promises, into `proof`; NaN where nothing is held or no law promises it."""
     proof = b.tick.proof
     if held:
-        held_lyapunov(b.tick, b.told.act.law, b.kept.act.law)
+        held_lyapunov(b.tick.estimate, b.tick.reference, b.told.act.law, b.kept.act.law, proof)
     else:
         proof.tick, proof.v2, proof.v2_rate = b.tick.estimate.tick, np.nan, np.nan
 
@@ -126,11 +126,11 @@ def hold(row: Record, b: Record, path: Array) -> Array:
     e, r, p, s = b.tick.estimate, b.tick.reference, b.told.act, b.kept.act
     # Whether it may learn is the present phase's to say: it observes after that has been decided.
     observe(b, row.observe == 1)
-    coming, disturbance, ahead = min(r.tick + p.law.preview, path.shape[0] - 1), np.empty(3), np.empty(3)
+    coming, ahead = min(r.tick + p.law.preview, path.shape[0] - 1), np.empty(3)
     for i in range(3):
-        disturbance[i], ahead[i] = e.disturbance[i], path[coming, 6 + i]
+        ahead[i] = path[coming, 6 + i]
     thrust = p.uav.hinged if row.uav == HINGED else e.thrust
-    held_law(thrust, disturbance, ahead, b.tick, b.environment, p.law, s.law)
+    held_law(thrust, ahead, e, r, b.environment, p.law, s.law, head(b.tick.command))
     for i in range(3):
         s.force[i] = b.tick.command.force[i]
     return end_effector_acceleration(r, p.law, s.law)

@@ -11,9 +11,10 @@ import numpy as np
 from numba import float64, njit
 
 from armland.estimation.plate.late_fusion import RING as FILTER_RING
+from armland.estimation.plate.layouts import kept_layout, plate_layout, told_layout
 from armland.estimation.plate.pose_filter import fuse, predict
 from armland.estimation.plate.reckoning import advance
-from armland.linking import VECTOR, linked, named
+from armland.linking import VECTOR, head, heads, linked, record
 from armland.mission.reference.moves import LAUNCH, LEAVE
 from armland.mission.table.phases import MAGNET, UAV
 from armland.models.environment import apparent_gravity
@@ -72,7 +73,41 @@ def take_attitude(m: Record, e: Record) -> None:
     e.plate_valid = 1
 
 
-@linked(lambda n: (float64, VECTOR, named("board", n)))
+@linked(
+    lambda _: (
+        *(*heads("measurement"), float64, VECTOR, VECTOR, VECTOR),
+        *(record(told_layout()), record(kept_layout()), record(plate_layout())),
+    )
+)
+@njit(cache=True)
+def follow(
+    m: Record,
+    lift: float,
+    pull: Array,
+    eye: Array,
+    view: Array,
+    p: Record,
+    s: Record,
+    plate: Record,
+) -> None:
+    """One tick of the pose filter: reckon, fuse an image that has arrived, and fill `plate`.
+
+    Args:
+        m: measurement, `linking.head`.
+        lift: force along the body's z, N; this and what follows as for `reckoning.advance`.
+        pull: (3,), m/s², D.
+        eye: (3,), m, D.
+        view: quaternion (4,), D<-camera.
+        p: of `layouts.told_layout`.
+        s: of `layouts.kept_layout`, updated.
+        plate: of `layouts.plate_layout`, written.
+    """
+    advance(m, lift, pull, eye, view, p, s)
+    if m.camera_fresh:
+        fuse(m, p, s)
+    predict(0.0, p, s, plate)
+
+
 @njit(cache=True)
 def estimate_plate(lift: float, push: Array, b: Record) -> None:
     """Pose filter on camera and link: plate, and the UAV's attitude on the deck.
@@ -86,11 +121,10 @@ def estimate_plate(lift: float, push: Array, b: Record) -> None:
     eye = turned(b.arm.rotation, p.camera)
     for i in range(3):
         eye[i] += b.arm.position[i]
-    gravity = apparent_gravity(b.environment, e.plate, e.plate_v)
-    advance(m, lift, push, gravity, eye, quaternion_of(b.arm.rotation), p.filter, s.filter)
-    if m.camera_fresh:
-        fuse(m, p.filter, s.filter)
-    predict(0.0, p.filter, s.filter, s.plate)
+    gravity, pull = apparent_gravity(b.environment, e.plate, e.plate_v), np.empty(3)
+    for i in range(3):
+        pull[i] = push[i] + gravity[i]
+    follow(head(m), lift, pull, eye, quaternion_of(b.arm.rotation), p.filter, s.filter, s.plate)
     for i in range(3):
         e.plate[i], e.plate_v[i], e.plate_a[i] = s.plate.position[i], s.plate.velocity[i], s.plate.acceleration[i]
         e.omega[i] = s.plate.omega[i]

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from numba import int64, njit, types
 
-from armland.linking import MATRIX, VECTOR, linked, record
+from armland.linking import MATRIX, VECTOR, head, linked, record
 from armland.plant import truth as true
 from armland.plant.devices import (
     air,
@@ -83,7 +83,8 @@ def sense(k: int, world: Record, views: Views, noise: Noise, measurement: Record
     link.receive(k, told.link, kept.link, what_fails, noise.link[row], measurement)
     if told.camera.fitted:
         chance = noise.flip[row, 0]
-        camera.look(k, told.camera, kept.camera, what_fails, noise.camera[row], measurement, truth, chance)
+        given = head(measurement), head(truth)
+        camera.look(k, told.camera, kept.camera, what_fails.camera, noise.camera[row], *given, chance)
     measurement.magnet_force, measurement.magnet_fault = kept.magnet.report, kept.magnet.fault
     truth.touching = kept.magnet.touching
     if told.faults.count > 0:

@@ -13,7 +13,7 @@ def bench(dynamics):
 
     from armland.control.laws import realisation, settings, table
     from armland.control.laws.rigid_body import ExactGains
-    from armland.linking import link
+    from armland.linking import head, link
     from armland.models.environment import on_land
     from armland.models.parameters import arm_model, uav_parameters
     from armland.models.posture import home_poses, upright
@@ -36,9 +36,10 @@ def bench(dynamics):
     kept = np.zeros(1, table.kept_layout())
 
     @njit
-    def evaluate(thrust, disturbance, ahead, mu, t, environment, arm_state, p, s, pr):
-        table.held_law(thrust, disturbance, ahead, t[0], environment[0], p[0], s[0])
-        table.held_lyapunov(t[0], p[0], s[0])
+    def evaluate(thrust, ahead, mu, t, environment, arm_state, p, s, pr):
+        e, r, command = t[0].estimate, t[0].reference, head(t[0].command)
+        table.held_law(thrust, ahead, e, r, environment[0], p[0], s[0], command)
+        table.held_lyapunov(e, r, p[0], s[0], t[0].proof)
         m, a, wrench = t[0].measurement, arm_state[0], mu.copy()
         torque = realisation.orientation_torque(realisation.end_effector_rate(m.qd, a), a, pr[0])
         for i in range(3):
@@ -61,11 +62,12 @@ def bench(dynamics):
         arm.refresh(velocity_terms=True)
         e["r"], e["v"] = arm.position, arm.jacobian[:3] @ m["qd"][0]
         e["quat"], e["omega"], e["hinge_force"], e["tau_att"] = quat, omega, hinge, tau_att
+        e["disturbance"] = disturbance
         r["r"], r["v"], r["a"], r["quat"] = e["r"] + r_e, r_v, r_a, (1.0, 0.0, 0.0, 0.0)
         kept[:] = np.zeros(1, table.kept_layout())
         tick["command"] = np.zeros(1, tick["command"].dtype)
         ahead = r["a"][0] if ahead is None else ahead
-        vectors = [np.broadcast_to(np.asarray(v, float), n).copy() for v, n in ((disturbance, 3), (ahead, 3), (mu, 6))]
+        vectors = [np.broadcast_to(np.asarray(v, float), n).copy() for v, n in ((ahead, 3), (mu, 6))]
         evaluate(thrust, *vectors, tick, on_land() if environment is None else environment, arm.state, p, kept, act)
         return SimpleNamespace(
             **{n: tick["command"][n][0].copy() for n in ("force", "delta_tau", "tau", "thrust")},

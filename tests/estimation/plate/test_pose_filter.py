@@ -54,7 +54,7 @@ def tick(k, taken, quat, rate, lift, eye, view, p, s, push=STILL):
     """One tick of the filter, the UAV's newest attitude `quat` and `rate` having been taken at `taken`."""
     m = np.zeros(1, MESSAGE)
     m["tick"], m["uav_tick"], m["uav_quat"], m["uav_rate"] = k, taken, quat, rate
-    advance(m[0], lift, push, DOWN, eye, view, p[0], s[0])
+    advance(m[0], lift, push + np.array(DOWN), eye, view, p[0], s[0])
 
 
 def quats(R):
@@ -481,7 +481,7 @@ def test_cost_of_a_tick_and_of_a_sample():
     def ticks(first, count, m, eye, view, p, s, plate):
         for k in range(first, first + count):
             m[0].tick, m[0].uav_tick = k, (k - 12) // 5 * 5
-            advance(m[0], 4.7, eye, (0.0, 0.0, -9.81), eye, view, p[0], s[0])
+            advance(m[0], 4.7, eye + np.array(DOWN), eye, view, p[0], s[0])
             predict(0.0, p[0], s[0], plate[0])
 
     @njit
@@ -538,7 +538,7 @@ def test_p1_is_thrust_along_the_tilted_body_and_apparent_gravity():
     m, gamma = np.zeros(1, MESSAGE), np.array([0.3, -0.2, -10.0])
     m["uav_quat"] = quats(Rotation.from_euler("y", 0.2))
     s["imu_tick"], s["track"]["begun"] = -1, 1
-    advance(m[0], 5.0, STILL, tuple(gamma), STILL, m["uav_quat"][0].copy(), p[0], s[0])
+    advance(m[0], 5.0, np.array(gamma), STILL, m["uav_quat"][0].copy(), p[0], s[0])
     lift = 5.0 / MASS * np.array([0.0, np.sin(0.2), np.cos(0.2)])
     np.testing.assert_allclose(s["track"]["acceleration"][0, 0], lift + gamma, atol=1e-12)
 

@@ -36,10 +36,10 @@ from armland.control.laws.limits import feasible, takeover
 from armland.control.laws.own import GIVEN, call, pack
 from armland.control.laws.realisation import held_acceleration
 from armland.control.laws.rigid_body import BacksteppingGains, ExactGains, Gravity, UavParameters
-from armland.linking import VECTOR, linked, record
+from armland.linking import VECTOR, heads, linked, record
 from armland.models.airframe.allocation import allocation_layout
 from armland.models.environment import apparent_gravity, apparent_moment, environment_layout
-from armland.records import Record, tick_layout
+from armland.records import Record
 from armland.rotations import Array, cross, matrix, turned
 
 LAWS = ("classical", "paper", "exact")
@@ -113,43 +113,45 @@ class State(NamedTuple):
 
 
 @linked(
-    lambda n: (
-        float64,
-        VECTOR,
-        VECTOR,
-        record(tick_layout(n)),
-        record(environment_layout()),
-        record(told_layout()),
-        record(kept_layout()),
+    lambda _: (
+        *(float64, VECTOR, *heads("estimate", "reference"), record(environment_layout())),
+        *(record(told_layout()), record(kept_layout()), *heads("command")),
     )
 )
 @njit(cache=True)
 def held_law(
-    thrust: float, disturbance: Array, ahead: Array, t: Record, environment: Record, p: Record, s: Record
+    thrust: float,
+    ahead: Array,
+    e: Record,
+    r: Record,
+    environment: Record,
+    p: Record,
+    s: Record,
+    c: Record,
 ) -> None:
-    """Fill Δτ_att, F_EE and f_T of `t.command`, and the acceleration `s.implied` (3,), m/s², D, that they mean for the pivot.
+    """Fill Δτ_att, F_EE and f_T of the command `c`, and the acceleration `s.implied` (3,), m/s², D, that they mean for the pivot.
 
     Args:
         thrust: f_T, N: asked of the UAV on the hinge, or as it acts.
-        disturbance: d̂_f (3,), N, D, at the centre of mass; zeros without an observer.
         ahead: the reference's acceleration (3,), m/s², D, `p.preview` ticks from now.
-        t: messages of the tick, `records.tick_layout`; its estimate and reference are read.
+        e: estimate of the tick; its disturbance is zero without an observer.
+        r: reference of the tick.
         environment: of `models.environment.environment_layout`.
         p: of `told_layout`.
         s: of `kept_layout`, updated.
+        c: command of the tick, `linking.head`.
 
     A user's law that fails is replaced by `exact` from that tick on; `s.failed` says so.
 
     Source: (6), (29), (33), (X.1), (X.4), (X.6), each in its module. The paper's laws take the pivot's velocity, which the arm
     measures, for the CM's: they drop ω × ρ.
     """
-    e, r, c = t.estimate, t.reference, t.command
     now = _state(thrust, e, environment, p)
     delta_tau, force = _asked(now, e, r, p, s)
     if p.law >= EXACT:
         # Less what the observer holds responsible: the arm makes up for it.
         for i in range(3):
-            force[i] -= disturbance[i]
+            force[i] -= e.disturbance[i]
     if p.extra_torque == FEEDFORWARD:
         # The sensor knows the hinge's force whatever wind or model do; the tool behind it accelerates with the pivot. What
         # travels arrives late and acts through the rotors' lag; the reference's part is known ahead.
@@ -163,7 +165,7 @@ def held_law(
     if p.acceleration == IMPLIED:
         acting = np.empty(3)
         for i in range(3):
-            acting[i] = force[i] + thrust * now.R[i, 2] + disturbance[i]
+            acting[i] = force[i] + thrust * now.R[i, 2] + e.disturbance[i]
         implied = held_acceleration(now.R, now.omega, acting, now.uav, now.gravity)
         for i in range(3):
             s.implied[i] = implied[i]
@@ -202,14 +204,13 @@ def end_effector_acceleration(r: Record, p: Record, s: Record) -> Array:
     return desired
 
 
-@linked(lambda n: (record(tick_layout(n)), record(told_layout()), record(kept_layout())))
+@linked(lambda _: (*heads("estimate", "reference"), record(told_layout()), record(kept_layout()), *heads("proof")))
 @njit(cache=True)
-def held_lyapunov(t: Record, p: Record, s: Record) -> None:
-    """Fill `t.proof`: V₂ (26), J, and the rate (30), W, that it has under the law in use, on the kinematics that this law assumes.
+def held_lyapunov(e: Record, r: Record, p: Record, s: Record, proof: Record) -> None:
+    """Fill `proof`: V₂ (26), J, and the rate (30), W, that it has under the law in use, on the kinematics that this law assumes.
 
     Arguments as in `held_law`. A user's own law promises none: NaN, until `exact` has taken over from it.
     """
-    e, r, proof = t.estimate, t.reference, t.proof
     q, omega, v, R = e.quat.copy(), e.omega.copy(), e.v.copy(), matrix(e.quat.copy())
     uav = UavParameters(p.mass, p.inertia.copy(), p.lever.copy())
     proof.tick, proof.v2, proof.v2_rate = e.tick, np.nan, np.nan

@@ -5,7 +5,7 @@
 | q_imu, ω | attitude and rates that the UAV reports | 1, rad/s, body |
 | δ | q_wb = δ ⊗ q_imu, by `alignment` | 1 |
 | f, m | `lift` along the body's z: rotors and, where it is held, the hinge; `mass` | N, kg |
-| γ, d | `gravity`; `push`, what else is known | m/s², D |
+| γ + d | `pull`: gravity, and what else is known | m/s², D |
 | a | acceleration of the centre of mass by this model | m/s², D |
 
 a = (f/m) R_wb e₃ + γ + d (P.1). An attitude is written back to the tick at which the UAV took it, and carried on
@@ -27,8 +27,7 @@ from armland.rotations import Array, from_rotation_vector, matrix, multiply
 def advance(
     m: Record,
     lift: float,
-    push: Array,
-    gravity: tuple[float, float, float],
+    pull: Array,
     eye: Array,
     view: Array,
     p: Record,
@@ -39,8 +38,7 @@ def advance(
     Args:
         m: measurement, of which the tick and the UAV's newest attitude and rates are read, and the tick at which it took them.
         lift: force along the body's z that acts now as far as is known, N.
-        push: (3,), m/s², D: what else is known to accelerate it.
-        gravity: γ (3,), m/s², D.
+        pull: γ + d (3,), m/s², D: gravity, and what else is known to accelerate it.
         eye: optical centre (3,), m, D, from the arm's joints.
         view: quaternion (4,), D<-camera, from the arm's joints.
         p: of `layouts.told_layout`.
@@ -55,7 +53,7 @@ def advance(
         s.camera_quat[row, i] = view[i]
     for i in range(3):
         s.camera_position[row, i] = eye[i]
-        s.push[row, i] = push[i] + gravity[i]
+        s.push[row, i] = pull[i]
         if fresh:
             s.rate[i] = m.uav_rate[i]
     if fresh:

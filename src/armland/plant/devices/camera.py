@@ -25,9 +25,10 @@ allows gets no credit for it.
 """
 
 import numpy as np
-from numba import njit
+from numba import float64, int64, njit
 
-from armland.plant.devices.camera_numbers import QUEUE
+from armland.linking import VECTOR, heads, linked, record
+from armland.plant.devices.camera_numbers import ERRORS, QUEUE, kept_layout, told_layout
 from armland.plant.devices.detector_errors import claim, loss, second_pose
 from armland.plant.noise import uniform
 from armland.plant.scene.eye import MARKER_DOWN
@@ -35,18 +36,24 @@ from armland.records import Record
 from armland.rotations import Array, conjugate, from_rotation_vector, matrix, multiply, turned, turned_back
 
 
+@linked(
+    lambda n: (
+        *(int64, record(told_layout(n)), record(kept_layout(n)), record(ERRORS), VECTOR),
+        *(*heads("measurement", "truth"), float64),
+    )
+)
 @njit(cache=True)
-def look(k: int, told: Record, kept: Record, faults: Record, noise: Array, m: Record, t: Record, chance: float) -> None:
+def look(k: int, told: Record, kept: Record, errors: Record, noise: Array, m: Record, t: Record, chance: float) -> None:
     """One tick of the camera in the scene.
 
     Args:
         k: present tick.
         told: of `camera_numbers.told_layout`.
         kept: of `camera_numbers.kept_layout`, updated.
-        faults: what fails, of `faults.table.kept_layout`.
+        errors: what fails, of `camera_numbers.ERRORS`.
         noise: standard normal numbers (12,), in the order of `noise.CAMERA_WIDTH`.
-        m: measurement, whose fields of the camera are written.
-        t: truth of the tick.
+        m: measurement, `linking.head`; its fields of the camera are written.
+        t: truth of the tick, `linking.head`.
         chance: a standard normal number, by which the second solution of a pose is taken or not.
     """
     m.camera_fresh = 0
@@ -61,9 +68,9 @@ def look(k: int, told: Record, kept: Record, faults: Record, noise: Array, m: Re
         for i in range(4):
             kept.mark_quat[i] = seen[i]
     kept.chance = chance
-    observe(k, noise, faults.camera, told, kept)
+    observe(k, noise, errors, told, kept)
     image = kept.sample
-    if not image.fresh or faults.camera.lost:
+    if not image.fresh or errors.lost:
         return
     m.camera_fresh, m.camera_capture = 1, image.capture + told.stamp
     m.camera_position = image.position

@@ -230,8 +230,7 @@ def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float, t
     )
     if told and not kept.faults.deaf:
         turned += kept.link.arrived.step
-    reference = StationReference(turned, still, still, s.heading)
-    g = world.environment.gravity
+    reference, g = StationReference(turned, still, still, s.heading), world.environment.gravity
     here = still, moving, quat.copy()
     thrust, q_d, integral = keep_station(*here, reference, still, gains, s.integral.copy(), (g[0], g[1], g[2]))
     s.thrust = thrust
