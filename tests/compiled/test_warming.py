@@ -28,31 +28,31 @@ def place(tmp_path: Path, monkeypatch) -> Path:
 
 
 def test_all_work_is_done_and_told_and_counts_until_something_changes(place: Path) -> None:
-    assert not warming.is_warm()
+    assert not warming.is_warm(7)
     told = []
-    assert warming.warm([("work:note", f"n{i}") for i in range(7)], lambda done, total: told.append((done, total)))
+    assert warming.warm(7, [("work:note", f"n{i}") for i in range(7)], lambda done, total: told.append((done, total)))
     assert sorted(told) == [(i + 1, 7) for i in range(7)]
     assert sorted(p.stem for p in place.glob("n*.*")) == [f"n{i}" for i in range(7)]
-    assert warming.is_warm()
+    assert warming.is_warm(7)
     (place / "lander" / "__pycache__" / "compiled.json").write_text(json.dumps({"a.py": "2"}))
-    assert not warming.is_warm()
+    assert not warming.is_warm(7)
 
 
 @pytest.mark.parametrize("call", ["work:fail", "work:die", "nowhere:note"])
 def test_work_that_fails_is_left_to_the_command(place: Path, call: str) -> None:
-    assert not warming.warm([("work:note", "a"), (call, "b"), ("work:note", "c")], lambda done, total: None)
-    assert not warming.is_warm()
+    assert not warming.warm(7, [("work:note", "a"), (call, "b"), ("work:note", "c")], lambda done, total: None)
+    assert not warming.is_warm(7)
 
 
 def test_nothing_is_to_be_done_where_nothing_is_compiled_or_kept(place: Path, monkeypatch) -> None:
     monkeypatch.setattr(warming, "places", lambda: [place / "nowhere"])
     assert warming.place() is None
-    assert warming.is_warm()
+    assert warming.is_warm(7)
     monkeypatch.setattr(warming, "places", lambda: [None])
     assert warming.place() == place / "lander" / "__pycache__"
-    assert not warming.is_warm()
+    assert not warming.is_warm(7)
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
-    assert warming.is_warm()
+    assert warming.is_warm(7)
 
 
 def test_full_disk_is_no_error(place: Path, monkeypatch) -> None:
@@ -60,5 +60,5 @@ def test_full_disk_is_no_error(place: Path, monkeypatch) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "write_text", full)
-    assert warming.warm([("work:note", "a")], lambda done, total: None)
-    assert not warming.is_warm()
+    assert warming.warm(7, [("work:note", "a")], lambda done, total: None)
+    assert not warming.is_warm(7)

@@ -20,21 +20,25 @@ def diagnostics() -> Console:
     return Console(stderr=True)
 
 
-def ready() -> Console:
-    """Standard error, when what a flight needs is compiled; where it is not there yet, says so and how far that is."""
+def ready(joints: int = 7) -> Console:
+    """Standard error, when what a flight needs is compiled; where it is not there yet, says so and how far that is.
+
+    Args:
+        joints: of the arm; that which comes with armland has seven.
+    """
     from armland.compiled.warming import is_warm, place, warm
 
     console = diagnostics()
     if place() is None:
         console.print(UNKEPT, highlight=False)
-    if is_warm():
+    if is_warm(joints):
         return console
     console.print(COMPILING, highlight=False)
     from armland.experiments.warming import pieces
 
     with progress_bar(console) as bar:
         task = bar.add_task("compiled")
-        warm(pieces(), lambda done, total: bar.update(task, completed=done, total=total))
+        warm(joints, pieces(joints), lambda done, total: bar.update(task, completed=done, total=total))
     return console
 
 

@@ -16,8 +16,8 @@ from subprocess import PIPE
 
 from armland.compiled.stamps import PACKAGE, STAMPS, cache, places
 
-WARM = "warm.json"
-"""Beside the stamps: those with which everything was compiled last."""
+WARM = "warm_{joints}.json"
+"""Beside the stamps: those with which everything for an arm with so many joints was compiled last."""
 
 PROCESSES = 2
 
@@ -31,16 +31,19 @@ for line in sys.stdin:
 """
 
 
-def is_warm() -> bool:
-    """Whether the compiled code is there; also where there is to be none, or nowhere to keep it."""
+def is_warm(joints: int) -> bool:
+    """Whether the compiled code for an arm with `joints` joints is there; also where there is to be none, or nowhere to keep it."""
     at = place()
-    return os.environ.get("NUMBA_DISABLE_JIT") == "1" or at is None or _stamps(at / WARM) == _stamps(at / STAMPS)
+    if os.environ.get("NUMBA_DISABLE_JIT") == "1" or at is None:
+        return True
+    return _stamps(at / WARM.format(joints=joints)) == _stamps(at / STAMPS)
 
 
-def warm(work: Sequence[tuple[str, str]], tell: Callable[[int, int], None]) -> bool:
+def warm(joints: int, work: Sequence[tuple[str, str]], tell: Callable[[int, int], None]) -> bool:
     """Compile; returns whether all went well. Where not, the command compiles what is missing as it goes.
 
     Args:
+        joints: of the arm.
         work: calls as `module:function` and argument, the longest first.
         tell: called with how many of them are done, and how many there are.
     """
@@ -73,7 +76,7 @@ def warm(work: Sequence[tuple[str, str]], tell: Callable[[int, int], None]) -> b
         at = place()
         if at is not None:
             with suppress(OSError):
-                (at / WARM).write_text(json.dumps(_stamps(at / STAMPS)), encoding="utf-8")
+                (at / WARM.format(joints=joints)).write_text(json.dumps(_stamps(at / STAMPS)), encoding="utf-8")
     return good
 
 

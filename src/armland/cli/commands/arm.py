@@ -72,6 +72,13 @@ def tell_arm(scenario: "Scenario", console: "Console") -> None:
         console.print(f"arm: {line}", highlight=False, markup=False, soft_wrap=True)
 
 
+def joints_of(scenario: "Scenario") -> int:
+    """Number of joints of the arm, for which code is compiled."""
+    from armland.models.parameters import arm_model
+
+    return arm_model(scenario).joints
+
+
 def _draw(scenario: "Scenario", pose: Any, out: Path) -> None:
     from armland.cli.exits import attempted, say
     from armland.models.description import compile_spec

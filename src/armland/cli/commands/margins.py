@@ -3,6 +3,7 @@
 from typing import Any, Literal
 
 from armland.cli import options
+from armland.cli.commands.arm import joints_of
 from armland.cli.console import ready, reported
 from armland.cli.results import Results, Work, publish
 from armland.scenario.deviation import Level
@@ -61,8 +62,8 @@ def margins(**given: Any) -> None:
         raise ConfigurationError(
             "--level nominal deviates nothing, so no pair can be found; mild, published or harsh do"
         )
+    console = ready(joints_of(loaded))
     prepare(loaded, given["mission"])
-    console = ready()
     from armland.experiments.margins.study import Terms, study
     from armland.view.figures.margins import draw_margins
     from armland.view.tables.margins import print_margins

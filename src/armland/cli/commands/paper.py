@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from rich.console import Console
 
 from armland.cli import options
+from armland.cli.commands.arm import joints_of
 from armland.cli.console import progress_bar, ready, reported
 from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
@@ -71,8 +72,8 @@ def paper(**given: Any) -> None:
     chosen = "compare" if compared and given["scenario"] == "paper" else given["scenario"]
     loaded = options.load(chosen, given)
     if samples is not None:
-        _spread(loaded, options.load("paper_bench", given), given, ready())
-    (_factorial if crossed else _compare if compared else _paper)(loaded, given, ready())
+        _spread(loaded, options.load("paper_bench", given), given, ready(joints_of(loaded)))
+    (_factorial if crossed else _compare if compared else _paper)(loaded, given, ready(joints_of(loaded)))
 
 
 def _paper(scenario: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:

@@ -3,7 +3,7 @@
 from typing import Any
 
 from armland.cli import options
-from armland.cli.commands.arm import tell_arm
+from armland.cli.commands.arm import joints_of, tell_arm
 from armland.cli.console import diagnostics, ready
 from armland.cli.results import Results, Work, publish
 
@@ -34,7 +34,7 @@ def reach(**given: Any) -> None:
     """Draw where an arm can catch and put down, and find the nearest place that works."""
     loaded = options.load(given["scenario"], given)
     tell_arm(loaded, diagnostics())
-    ready()
+    ready(joints_of(loaded))
     from armland.experiments.reach import reach as search
     from armland.view.figures.reach import draw_reach
     from armland.view.tables.reach import print_reach

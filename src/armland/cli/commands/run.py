@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from rich.console import Console
 
 from armland.cli import options
-from armland.cli.commands.arm import tell_arm
+from armland.cli.commands.arm import joints_of, tell_arm
 from armland.cli.commands.uav import tell_uav
 from armland.cli.console import diagnostics, flights_told, phases_told, ready
 from armland.cli.exits import EXPLAINED
@@ -104,7 +104,7 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
         loaded = options.load(name, {**given, "deviation": "published"})
     tell_arm(loaded, diagnostics())
     tell_uav(loaded, diagnostics())
-    console = ready()
+    console = ready(joints_of(loaded))
     from armland.experiments.episode import prepare
 
     flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))

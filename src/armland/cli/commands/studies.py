@@ -3,6 +3,7 @@
 from typing import Any
 
 from armland.cli import options
+from armland.cli.commands.arm import joints_of
 from armland.cli.console import ready, reported
 from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
@@ -46,7 +47,8 @@ Exit code: 0 when it is done, 2 for bad input, 3 if something broke, 130 if it w
 )
 def verify(**given: Any) -> None:
     """Run the paper's proof: where V₂ falls as (30) says, and which assumption breaks it on the whole demonstrator."""
-    loaded, console = options.load(given["scenario"], given), ready()
+    loaded = options.load(given["scenario"], given)
+    console = ready(joints_of(loaded))
     from armland.experiments.proof.attribution import save_channels
     from armland.experiments.proof.verification import prove
     from armland.view.figures.proof import draw_proof_figures
@@ -76,7 +78,8 @@ def verify(**given: Any) -> None:
 )
 def envelope(**given: Any) -> None:
     """Compute the capture envelope: offset, speed and tilt from which the magnet grips, beside the mission's thresholds."""
-    loaded, console = options.load(given["scenario"], given), ready()
+    loaded = options.load(given["scenario"], given)
+    console = ready(joints_of(loaded))
     from armland.experiments.envelope import study
     from armland.mission.plan import plan
     from armland.view.figures.envelope import draw_envelope
@@ -107,7 +110,8 @@ def envelope(**given: Any) -> None:
 )
 def takeoff_weight(**given: Any) -> None:
     """Find the largest take-off weight against the speed that the arm gives: by momentum theory and by flights."""
-    loaded, console = options.load(given["scenario"], given), ready()
+    loaded = options.load(given["scenario"], given)
+    console = ready(joints_of(loaded))
     from armland.experiments.takeoff_weight.study import study
     from armland.view.figures.takeoff_weight import draw_takeoff_weight
     from armland.view.tables.studies import print_takeoff_weight
