@@ -17,6 +17,7 @@ from armland.scenario.gear import Cradle, Hinge, Magnet, Plate, Skids
 from armland.scenario.mission import Bounds, Limits, Place, Run, Trajectory
 from armland.scenario.quantities import Section, key
 from armland.scenario.refusal import problems, refusal
+from armland.scenario.sea import Sea
 from armland.scenario.sensing import Camera, Imperfections, Sensors
 from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.uav import Link, Onboard, Rotors, Uav
@@ -39,7 +40,7 @@ HARDWARE = (
 )
 """Sections of which the controller has a belief of its own."""
 
-PLANT_ONLY = ("imperfections", "deviation", "disturbance", "air", "faults")
+PLANT_ONLY = ("imperfections", "deviation", "disturbance", "air", "sea", "faults")
 """Sections that the controller never sees."""
 
 
@@ -81,6 +82,7 @@ class Scenario(Section):
     deviation: Deviation = Deviation()
     disturbance: Disturbance = Disturbance()
     air: Air = Air()
+    sea: Sea = Sea()
     control: Control = Control()
     estimation: Estimation = Estimation()
     place: Place = Place()

@@ -23,6 +23,7 @@ GEAR = (
         "imperfections",
         "deviation",
         "air",
+        "sea",
         "bounds",
         "estimation",
         "limits",
