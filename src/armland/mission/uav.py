@@ -133,7 +133,11 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
         s.thrust = c.thrust if row.held else p.hinged
     s.alone = s.alone + 1 if c.uav_mode == MODE_AUTONOMOUS else 0
     s.sought = s.sought if s.alone > 0 else 0
-    _send(conjugate(align), s, c)
+    own = conjugate(align)
+    if b.environment.moves:
+        # Into the inertial frame, in which the UAV holds its attitude.
+        own = multiply(b.environment.base_quat.copy(), own)
+    _send(own, s, c)
 
 
 @njit(cache=True)

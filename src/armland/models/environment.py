@@ -3,6 +3,7 @@
 | symbol | name | unit, frame |
 |---|---|---|
 | g | `gravity` (3,) | m/s², D |
+| q_b | `base_quat` (4,): the deck's attitude, scalar first | 1, W<-D |
 | v_b, ω_b | `base_v`, `base_omega` (3,): of the deck's origin | m/s, rad/s, D |
 | a_b, ω̇_b | `base_a`, `base_alpha` (3,) | m/s², rad/s², D |
 | r, v | `r`, `v` (3,): a point and its velocity as seen from the deck | m, m/s, D |
@@ -35,14 +36,16 @@ DOWN = (0.0, 0.0, -STANDARD_GRAVITY)
 # Kept, so that equal layouts are one object, which compiled code recognises fastest.
 @lru_cache
 def environment_layout() -> np.dtype:
-    """Gravity and the deck's motion, as one record."""
-    return np.dtype([(name, "f8", (3,)) for name in ("gravity", "base_v", "base_omega", "base_a", "base_alpha")])
+    """Gravity and the deck's motion, as one record; `moves` is 1 where there is any, 0 on land."""
+    motion = [(name, "f8", (3,)) for name in ("gravity", "base_v", "base_omega", "base_a", "base_alpha")]
+    return np.dtype([*motion, ("base_quat", "f8", (4,)), ("moves", "i8")])
 
 
 def on_land(gravity: tuple[float, float, float] = DOWN) -> Records:
     """The environment (1,) of a deck at rest under `gravity` (3,), m/s², deck axes."""
     environment: Records = np.zeros(1, environment_layout())
     environment["gravity"] = gravity
+    environment["base_quat"][0, 0] = 1.0
     return environment
 
 

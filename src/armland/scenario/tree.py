@@ -18,7 +18,7 @@ from armland.scenario.mission import Bounds, Limits, Place, Run, Trajectory
 from armland.scenario.quantities import Section, key
 from armland.scenario.refusal import problems, refusal
 from armland.scenario.sea import Sea
-from armland.scenario.sensing import Camera, Imperfections, Sensors
+from armland.scenario.sensing import Camera, Imperfections, MotionReference, Sensors
 from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.uav import Link, Onboard, Rotors, Uav
 
@@ -36,6 +36,7 @@ HARDWARE = (
     "onboard",
     "link",
     "sensors",
+    "motion_reference",
     "environment",
 )
 """Sections of which the controller has a belief of its own."""
@@ -77,6 +78,7 @@ class Scenario(Section):
     onboard: Onboard = Onboard()
     link: Link
     sensors: Sensors = Sensors()
+    motion_reference: MotionReference = MotionReference()
     environment: Environment = Environment()
     imperfections: Imperfections = Imperfections()
     deviation: Deviation = Deviation()
@@ -196,6 +198,7 @@ def _problems(s: Scenario) -> list[str]:
     # What contradicts itself across sections.
     problems, rate = [], s.run.rate_hz
     devices = {"onboard.rate_hz": s.onboard.rate_hz, "link.rate_hz": s.link.rate_hz}
+    devices["motion_reference.rate_hz"] = s.motion_reference.rate_hz
     devices["control.station.rate_hz"] = s.control.station.rate_hz
     for name, experiment in s.experiments.items():
         if experiment.onboard is not None:

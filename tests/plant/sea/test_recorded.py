@@ -22,7 +22,9 @@ def swell(t):
 
 def test_deck_does_what_was_recorded(tmp_path):
     """Between its samples too, with the speed and acceleration of the smooth motion that was sampled."""
-    motion = recorded_motion(written(tmp_path, heave_m=swell(TIMES) + 4.0, roll_deg=np.rad2deg(0.1 + 0.2 * swell(TIMES))), 45.0)
+    motion = recorded_motion(
+        written(tmp_path, heave_m=swell(TIMES) + 4.0, roll_deg=np.rad2deg(0.1 + 0.2 * swell(TIMES))), 45.0
+    )
     t = np.arange(2.0, 45.0, 0.033)
     mean = swell(TIMES[TIMES <= 55.0]).mean()
     np.testing.assert_allclose(motion.at(t)[:, 2], swell(t) - mean, atol=2e-3)
@@ -60,7 +62,10 @@ def test_resampling_adds_no_energy(tmp_path, seed):
 @pytest.mark.parametrize(
     ("columns", "message"),
     [
-        ({"heave_m": 30.0 * swell(TIMES) / 0.3}, r"row \d+: heave_m = \S+, \S+ from its mean; at most 10 is a deck's: .* other units"),
+        (
+            {"heave_m": 30.0 * swell(TIMES) / 0.3},
+            r"row \d+: heave_m = \S+, \S+ from its mean; at most 10 is a deck's: .* other units",
+        ),
         ({"roll_rad": 30.0 * swell(TIMES)}, r"roll_rad = .* at most 1.05"),
         ({"heave_mps2": 9.81 * 30.0 * swell(TIMES)}, r"heave_mps2 = .* at most 20"),
         ({"height": swell(TIMES)}, "has no motion; a recorded deck has one or more of heave_m or heave_mps2"),
@@ -77,7 +82,10 @@ def test_what_no_deck_does_is_refused(tmp_path, columns, message):
 @pytest.mark.parametrize(
     ("times", "message"),
     [
-        (np.where(TIMES > 20.0, TIMES + 3.0, TIMES), r"row \d+: a gap of 3.1 s; the median step is 0.1 s, and 5 times that is allowed"),
+        (
+            np.where(TIMES > 20.0, TIMES + 3.0, TIMES),
+            r"row \d+: a gap of 3.1 s; the median step is 0.1 s, and 5 times that is allowed",
+        ),
         (0.5 * TIMES, "lasts 29.95 s, and run.duration_s = 45; a longer record, or a shorter run"),
         (TIMES[::-1], "times must rise"),
         (10.0 * TIMES, "a sample every 1 s; a deck needs one every 0.5 s"),

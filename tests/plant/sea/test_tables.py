@@ -40,7 +40,9 @@ def test_table_is_its_closed_form_and_has_two_sides(tmp_path):
     for table in (whole, half):
         assert np.abs(table.at(omega, towards) - exact).max() < 0.03
     # At a row nothing is lost.
-    np.testing.assert_allclose(half.at(OMEGA[20:21], np.array([-np.pi / 3])), rolling(OMEGA[20:21], np.array([-np.pi / 3])))
+    np.testing.assert_allclose(
+        half.at(OMEGA[20:21], np.array([-np.pi / 3])), rolling(OMEGA[20:21], np.array([-np.pi / 3]))
+    )
 
 
 def test_interpolation_is_that_of_waveresponse(tmp_path):
@@ -66,9 +68,18 @@ def test_deck_moves_by_the_table(landing, tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda H: H * np.where(np.arange(6) == 3, 180.0 / np.pi, 1.0), r"roll of \S+ rad/m at .* in other units, such as deg/m"),
-        (lambda H: 30.0 * H * (np.arange(6) == 2), r"heave of \S+ m/m at .*; at most 20, 20 times the wave, is a hull's"),
-        (np.conj, r"\d+% of roll's response .* comes before its wave; at most 80%: .* imaginary parts have the other sign"),
+        (
+            lambda H: H * np.where(np.arange(6) == 3, 180.0 / np.pi, 1.0),
+            r"roll of \S+ rad/m at .* in other units, such as deg/m",
+        ),
+        (
+            lambda H: 30.0 * H * (np.arange(6) == 2),
+            r"heave of \S+ m/m at .*; at most 20, 20 times the wave, is a hull's",
+        ),
+        (
+            np.conj,
+            r"\d+% of roll's response .* comes before its wave; at most 80%: .* imaginary parts have the other sign",
+        ),
         (lambda H: H * np.where(OMEGA > 3.0, np.nan, 1.0)[:, None], r"row 56: surge_re = nan is not a finite number"),
     ],
 )
@@ -86,9 +97,9 @@ def test_causal_table_with_resonance_is_taken(tmp_path):
 def test_table_with_holes_is_refused(tmp_path, landing):
     with pytest.raises(ConfigurationError, match="no direction between -180 and -120 degrees; at most 46"):
         read_response(written(tmp_path / "a.csv", (0, 60, 120, 180)))
+    file = tmp_path / "b.csv"
+    file.write_text("omega_radps,towards_deg\n1,0\n2,0\n")
     with pytest.raises(ConfigurationError, match="no motion; a hull's response has columns such as heave_re"):
-        file = tmp_path / "b.csv"
-        file.write_text("omega_radps,towards_deg\n1,0\n2,0\n")
         read_response(str(file))
     whole = written(tmp_path / "c.csv", range(0, 181, 30))
     lines = (tmp_path / "c.csv").read_text().splitlines()

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
+from armland.plant.sea.hull import contour
 from armland.plant.sea.spectra import bretschneider
 from armland.plant.sea.waves import spreading, wave_motion
-from armland.plant.sea.hull import contour
 
 # Significant single amplitudes of heave m, heave speed m/s, pitch and pitch speed in degrees; head sea, long-crested.
 TABLE = {

@@ -24,6 +24,7 @@ GEAR = (
         "deviation",
         "air",
         "sea",
+        "motion_reference",
         "bounds",
         "estimation",
         "limits",

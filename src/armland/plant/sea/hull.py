@@ -5,7 +5,7 @@
 | hull axes | x ahead, y to port, z up; at rest those of D and W | |
 | ζ = Re(a e^{i(ω_e t − k·r + ε)}) | elevation at r of a wave that travels towards χ | m |
 | k = ω²/g, ω_e = ω − k U cos χ | deep water; frequency of encounter at the speed U ahead | rad/m, rad/s |
-| H (6,) | motion = Re(H a e^{i(ω_e t + ε)}): surge, sway, heave, roll, pitch, yaw; a positive phase leads the crest at r = 0 | m/m, rad/m |
+| H (6,) | motion = Re(H a e^{i(ω_e t + ε)}), in the order of `MOTIONS`; a positive phase leads the crest at r = 0 | m/m, rad/m |
 | s, σ | mean of a wave over the length, over the beam, 1: sin(x)/x; best slope over its slope, 1: 3 (sin x − x cos x)/x³ | |
 | x, y | ½ k L cos χ, ½ k B sin χ | 1 |
 

@@ -1,10 +1,10 @@
 """A recorded motion of the deck as a sum of sines: smooth, and without energy that is not in the record.
 
-A CSV file with time_s and, of each motion that there is, one column: heave_m or heave_mps2, likewise surge and sway; roll_rad or roll_deg,
-likewise pitch and yaw. The mean of all but roll and pitch is taken off. Less the straight line between its ends, the record is a sum of
-sines that are zero at both (DST-I): its variance is that of the samples, and nothing is faster than the samples are. What is faster than
-`FASTEST_HZ` is left out, since a second derivative makes noise of it; of an acceleration also what is slower than `SLOWEST_S`, which
-integrated twice would be drift.
+A CSV file with time_s and, of each motion that there is, one column: heave_m or heave_mps2, likewise surge and sway; roll_rad or
+roll_deg, likewise pitch and yaw. The mean of all but roll and pitch is taken off. Less the straight line between its ends, the
+record is a sum of sines that are zero at both (DST-I): its variance is that of the samples, and nothing is faster than the
+samples are. What is faster than `FASTEST_HZ` is left out, since a second derivative makes noise of it; of an acceleration also
+what is slower than `SLOWEST_S`, which integrated twice would be drift.
 """
 
 from pathlib import Path
@@ -55,7 +55,9 @@ def recorded_motion(path: Path, needed_s: float) -> Motion:
     times = rows[:, 0] - rows[0, 0]
     step, lasts = float(np.median(np.diff(times))), min(float(times[-1]), needed_s + MARGIN_S)
     if step > SLOWEST_SAMPLE_S:
-        raise ConfigurationError(f"{path.name}: a sample every {step:g} s; a deck needs one every {SLOWEST_SAMPLE_S:g} s")
+        raise ConfigurationError(
+            f"{path.name}: a sample every {step:g} s; a deck needs one every {SLOWEST_SAMPLE_S:g} s"
+        )
     even = np.linspace(0.0, lasts, round(lasts / step) + 1)
     k = np.arange(1, len(even) - 1)
     omega = np.pi * k / lasts
@@ -102,5 +104,6 @@ def _check_speed(file: str, motion: Motion, needed_s: float) -> None:
         i = int((most / SWIFTEST).argmax())
         unit = "m/s" if i < 3 else "rad/s"
         raise ConfigurationError(
-            f"{file}: {MOTIONS[i]} at up to {most[i]:.3g} {unit}; at most {SWIFTEST[i]:g} {unit} is a deck's: are time and motion in s, m, rad?"
+            f"{file}: {MOTIONS[i]} at up to {most[i]:.3g} {unit}; at most {SWIFTEST[i]:g} {unit} is a deck's: "
+            "are time and motion in s, m, rad?"
         )

@@ -1,8 +1,8 @@
 """A hull's response and a spectrum of the sea as tables: read, and refused where they cannot be what they say.
 
-A response (RAO) stands in a CSV file with the columns omega_radps, towards_deg and, of each motion that there is, MOTION_re and MOTION_im,
-m/m or rad/m, with the conventions of `sea.hull`. Rows are a full grid. A table with directions of 0 to 180 degrees alone is of a hull
-that is alike to both sides. Between rows real and imaginary part are linear, never amplitude and phase.
+A response (RAO) stands in a CSV file with the columns omega_radps, towards_deg and, of each motion that there is, MOTION_re and
+MOTION_im, m/m or rad/m, with the conventions of `sea.hull`. Rows are a full grid. A table with directions of 0 to 180 degrees
+alone is of a hull that is alike to both sides. Between rows real and imaginary part are linear, never amplitude and phase.
 """
 
 from collections.abc import Callable
@@ -82,8 +82,8 @@ def read_response(file: str) -> Response:
     omega, towards = np.unique(rows[:, 0]), np.unique(rows[:, 1])
     if omega[0] <= 0.0 or len(omega) < 2 or len(rows) != len(omega) * len(towards):
         raise ConfigurationError(
-            f"{path.name}: {len(rows)} rows of {len(omega)} frequencies and {len(towards)} directions; a full grid of both, two or more "
-            "frequencies and all above 0, is needed"
+            f"{path.name}: {len(rows)} rows of {len(omega)} frequencies and {len(towards)} directions; a full grid of both, "
+            "two or more frequencies and all above 0, is needed"
         )
     order = np.lexsort((rows[:, 1], rows[:, 0]))
     values = np.zeros((len(omega), len(towards), len(MOTIONS)), complex)
@@ -122,8 +122,8 @@ def _check_units(name: str, omega: Array, around: Array, values: Array) -> None:
         i, j, m = np.unravel_index(int((np.abs(values) / most).argmax()), values.shape)
         bound, unit = float(np.broadcast_to(most, values.shape)[i, j, m]), "m/m" if m < 3 else "rad/m"
         raise ConfigurationError(
-            f"{name}: {MOTIONS[m]} of {abs(values[i, j, m]):g} {unit} at {omega[i]:g} rad/s, {around[j]:g} degrees; at most {bound:.3g}, "
-            f"{MOST_RATIO:g} times the wave, is a hull's: is it in other units, such as deg/m?"
+            f"{name}: {MOTIONS[m]} of {abs(values[i, j, m]):g} {unit} at {omega[i]:g} rad/s, {around[j]:g} degrees; "
+            f"at most {bound:.3g}, {MOST_RATIO:g} times the wave, is a hull's: is it in other units, such as deg/m?"
         )
 
 
@@ -153,7 +153,9 @@ def read_spectrum(file: str) -> tuple[Array, Array]:
     path = Path(file)
     omega, density = read_columns(path, ("omega_radps", "density_m2s"), "a wave spectrum").T
     if omega[0] <= 0.0 or (np.diff(omega) <= 0.0).any() or (density < 0.0).any():
-        raise ConfigurationError(f"{path.name}: frequencies must lie above 0 and rise, and densities must not be negative")
+        raise ConfigurationError(
+            f"{path.name}: frequencies must lie above 0 and rise, and densities must not be negative"
+        )
     height = 4.0 * np.sqrt(np.trapezoid(density, omega))
     if not 0.01 <= height <= 15.0:
         raise ConfigurationError(

@@ -33,6 +33,4 @@ def tank_motion(scenario: Scenario) -> Motion:
     lobes = [2.0 * np.pi / period * (1.0 + WIDTH * random.uniform(-1.7, 1.7, WAVES)) for period in PERIODS_S]
     phases = random.uniform(-np.pi, np.pi, (2 * WAVES, 6))
     # Equal shares of the variance: ½ |A|² for each of the harmonics.
-    return Motion(
-        np.concatenate(lobes), size * np.sqrt(1.0 / WAVES) * np.exp(1j * phases), np.zeros(6), np.zeros(6)
-    )
+    return Motion(np.concatenate(lobes), size * np.sqrt(1.0 / WAVES) * np.exp(1j * phases), np.zeros(6), np.zeros(6))

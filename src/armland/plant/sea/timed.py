@@ -50,3 +50,26 @@ def timed_deck(scenario: Scenario) -> Array:
     q[:, :3] += Rotation.from_euler("ZYX", q[:, 3:]).apply(lever) - lever
     v = np.diff(q, axis=0) * rate
     return np.hstack([q[1:-1], v[:-1], np.diff(v, axis=0) * rate])
+
+
+def on_deck(row: Array, place: Array, quat: Array, level: bool) -> tuple[Array, Array]:
+    """Where in W a place on the deck is, (3,), m, and an attitude there, (4,), scalar first.
+
+    Args:
+        row: of `timed_deck` (18,), m, rad, per s and s².
+        place: (3,), m, D.
+        quat: (4,), D<-body, scalar first.
+        level: whether it has only the deck's heading.
+    """
+    turn = Rotation.from_euler("ZYX", row[3:6])
+    turned = Rotation.from_euler("Z", row[3]) if level else turn
+    out = turned * Rotation.from_quat(quat, scalar_first=True)
+    return row[:3] + turn.apply(place), out.as_quat(scalar_first=True)
+
+
+def velocity_on_deck(row: Array, place: Array) -> tuple[Array, Array]:
+    """Velocity of what lies on the deck at `place` (3,), m, W: (3,) m/s and (3,) rad/s, W; `row` as for `on_deck`."""
+    yaw, pitch = Rotation.from_euler("Z", row[3]), Rotation.from_euler("ZY", row[3:5])
+    axes = np.array([[0.0, 0.0, 1.0], yaw.apply([0.0, 1.0, 0.0]), pitch.apply([1.0, 0.0, 0.0])])
+    omega = row[9:12] @ axes
+    return row[6:9] + np.cross(omega, place - row[:3]), omega
