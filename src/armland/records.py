@@ -180,7 +180,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("deck", (3,), "m", "W", "the deck's origin; at rest in the world's on land"),
         Field("deck_v", (3,), "m/s", "W", "its velocity"),
         Field("deck_a", (3,), "m/s²", "W", "its acceleration"),
-        Field("deck_quat", (4,), "1", "W<-D", "the deck's attitude, scalar first"),
+        Field("deck_quat", (4,), "1", "W<-deck", "the deck's attitude, scalar first"),
         Field("deck_omega", (3,), "rad/s", "W", "its angular velocity"),
         Field("deck_alpha", (3,), "rad/s²", "W", "its angular acceleration"),
     ),

@@ -4,7 +4,7 @@ import pytest
 
 from armland.cli.options import load, parse_settings
 from armland.errors import ConfigurationError
-from armland.scenario.sea import Sea
+from armland.scenario.environment import Sea
 
 
 def test_values_are_toml_and_keys_are_dotted():

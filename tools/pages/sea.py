@@ -37,7 +37,9 @@ def over_time(axes: Axes, motion: int, factor: float, unit: str) -> None:
     """One motion of all that are shown."""
     times = np.arange(0.0, SHOWN_S, 0.02)
     for state, colour in SHOWN.items():
-        axes.plot(times, factor * deck_motion(scenario(state)).at(times)[:, motion], color=colour, linewidth=0.9, label=state)
+        axes.plot(
+            times, factor * deck_motion(scenario(state)).at(times)[:, motion], color=colour, linewidth=0.9, label=state
+        )
     axes.set(xlabel="time (s)", ylabel=f"{MOTIONS[motion]} ({unit})", xlim=(0.0, SHOWN_S))
 
 
@@ -76,7 +78,13 @@ def main(out: Path) -> None:
     """Draw the figure into `out` and print significant single amplitudes, heave in m, angles in degrees."""
     for state in STATES:
         size = deck_motion(scenario(state)).significant()
-        print(state, *(f"{n} {s * (1.0 if i < 3 else 180.0 / np.pi):.3f}" for i, (n, s) in enumerate(zip(MOTIONS, size, strict=True))))
+        print(
+            state,
+            *(
+                f"{n} {s * (1.0 if i < 3 else 180.0 / np.pi):.3f}"
+                for i, (n, s) in enumerate(zip(MOTIONS, size, strict=True))
+            ),
+        )
     for path in drawn(out, {"sea_deck": page}):
         if path.suffix == ".pdf":
             path.unlink()

@@ -15,8 +15,8 @@ from armland.mission.plan import Plan
 from armland.mission.reference.refer import refer
 from armland.mission.supervisor.limits import limit
 from armland.models.arm import Views
-from armland.models.carried import carry_along
 from armland.models.chain import coriolis_wrench, feel, refresh
+from armland.models.environment import carry_along
 from armland.records import Record, Records, Tick
 from armland.rotations import Array
 

@@ -12,19 +12,18 @@ from armland.plant.devices import (
     air,
     brake,
     camera,
-    deck,
     encoders,
     imu,
     link,
     magnet,
     motors,
     onboard,
-    reference,
     rotors,
     wrench,
 )
 from armland.plant.faults import effects, intrusions
 from armland.plant.noise import BLOCK, Noise
+from armland.plant.sea import deck, reference
 from armland.plant.world import world_layout
 from armland.records import Record, layout
 from armland.rotations import Array

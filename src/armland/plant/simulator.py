@@ -175,8 +175,7 @@ class Simulator:
             kept["onboard"]["integral"][0, :2] = np.linalg.norm(lift) / (believed * factor) * seen[:2]
         kept["link"]["arrived"]["mode"] = UavMode.AUTONOMOUS if flying else UavMode.OFF
         if not flying and len(self.timed_deck):
-            v, omega = velocity_on_deck(self.timed_deck[0], d.qpos[s.uav_qpos[:3]])
-            d.qvel[s.uav_dof] = np.concatenate([v, matrix(quat).T @ omega])
+            d.qvel[s.uav_dof] = velocity_on_deck(self.timed_deck[0], d.qpos[s.uav_qpos[:3]], matrix(quat))
         if flying:
             d.qvel[s.uav_dof[:3]] = drawn.velocity
             self._spin(pull / factor, weight, factor)
@@ -200,13 +199,10 @@ class Simulator:
     def draw_noise(self) -> None:
         """Draw the next block of noise."""
         self.noise_source.draw()
-        if len(self.timed_wind):
-            ticks = np.arange(self.tick, self.tick + BLOCK)
-            self.noise.wind[:] = self.timed_wind[np.minimum(ticks, len(self.timed_wind) - 1)]
-        if len(self.timed_deck):
-            self.noise.deck[:] = self.timed_deck[
-                np.minimum(np.arange(self.tick, self.tick + BLOCK), len(self.timed_deck) - 1)
-            ]
+        ticks = np.arange(self.tick, self.tick + BLOCK)
+        for rows, timed in ((self.noise.wind, self.timed_wind), (self.noise.deck, self.timed_deck)):
+            if len(timed):
+                rows[:] = timed[np.minimum(ticks, len(timed) - 1)]
 
     def read(self, tick: Tick) -> None:
         """Fill measurement and truth of `tick`."""

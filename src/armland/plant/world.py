@@ -11,20 +11,19 @@ from armland.plant.devices import (
     air,
     brake,
     camera_numbers,
-    deck,
     encoders,
     imu,
     link,
     magnet,
     motors,
     onboard,
-    reference,
     rotors,
     wrench,
 )
 from armland.plant.draw import Draw, Start
 from armland.plant.faults import table as faults
 from armland.plant.scene.composition import Scene
+from armland.plant.sea import deck, reference
 from armland.records import Records
 from armland.scenario import Scenario
 

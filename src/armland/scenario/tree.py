@@ -10,14 +10,13 @@ from armland.scenario import quantities as of
 from armland.scenario.arm import Arm, Tool
 from armland.scenario.control import Control, Experiment
 from armland.scenario.deviation import Deviation
-from armland.scenario.environment import Air, Disturbance, Environment
+from armland.scenario.environment import Air, Disturbance, Environment, Sea
 from armland.scenario.estimation import Estimation
 from armland.scenario.faults import Fault
 from armland.scenario.gear import Cradle, Hinge, Magnet, Plate, Skids
 from armland.scenario.mission import Bounds, Limits, Place, Run, Trajectory
 from armland.scenario.quantities import Section, key
 from armland.scenario.refusal import problems, refusal
-from armland.scenario.sea import Sea
 from armland.scenario.sensing import Camera, Imperfections, MotionReference, Sensors
 from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.uav import Link, Onboard, Rotors, Uav

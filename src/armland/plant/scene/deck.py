@@ -1,7 +1,7 @@
 """The deck that carries arm and cradle where the sea moves it: a body on joints of its own, D in W.
 
 A mocap body passes no velocity to contacts and joints. So the deck is a dynamic body whose joints have so much reflected inertia
-that nothing on it moves it; `devices.deck` sets its state at each tick and applies the force that its acceleration needs. On a
+that nothing on it moves it; `sea.deck` sets its state at each tick and applies the force that its acceleration needs. On a
 calm sea there is no such body: what stands on the ground belongs to the world.
 """
 

@@ -67,9 +67,15 @@ def on_deck(row: Array, place: Array, quat: Array, level: bool) -> tuple[Array, 
     return row[:3] + turn.apply(place), out.as_quat(scalar_first=True)
 
 
-def velocity_on_deck(row: Array, place: Array) -> tuple[Array, Array]:
-    """Velocity of what lies on the deck at `place` (3,), m, W: (3,) m/s and (3,) rad/s, W; `row` as for `on_deck`."""
+def velocity_on_deck(row: Array, place: Array, R: Array) -> Array:
+    """Velocity (3,), m/s, W, and angular velocity (3,), rad/s, body, of what lies on the deck at `place` (3,), m, W.
+
+    Args:
+        row: of `timed_deck` (18,), m, rad, per s and s².
+        place: (3,), m, W.
+        R: its attitude (3, 3), a rotation W<-body.
+    """
     yaw, pitch = Rotation.from_euler("Z", row[3]), Rotation.from_euler("ZY", row[3:5])
     axes = np.array([[0.0, 0.0, 1.0], yaw.apply([0.0, 1.0, 0.0]), pitch.apply([1.0, 0.0, 0.0])])
     omega = row[9:12] @ axes
-    return row[6:9] + np.cross(omega, place - row[:3]), omega
+    return np.concatenate([row[6:9] + np.cross(omega, place - row[:3]), R.T @ omega])

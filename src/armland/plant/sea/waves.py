@@ -14,7 +14,7 @@ from armland.plant.sea.spectra import bretschneider, jonswap
 from armland.plant.sea.tables import Response, read_response, read_spectrum
 from armland.rotations import Array
 from armland.scenario import Scenario
-from armland.scenario.sea import Sea
+from armland.scenario.environment import Sea
 
 BANDS = 400
 

@@ -4,7 +4,7 @@ import pytest
 
 from armland.errors import ConfigurationError
 from armland.scenario import load_scenario
-from armland.scenario.sea import Sea
+from armland.scenario.environment import Sea
 
 
 def sea(**keys):

@@ -5,9 +5,8 @@ import pinocchio as pin
 import pytest
 from numba import njit
 
-from armland.models.carried import carry_along
 from armland.models.chain import feel, refresh
-from armland.models.environment import environment_layout, on_land
+from armland.models.environment import carry_along, environment_layout, on_land
 
 
 @njit
