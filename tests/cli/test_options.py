@@ -4,6 +4,7 @@ import pytest
 
 from armland.cli.options import load, parse_settings
 from armland.errors import ConfigurationError
+from armland.scenario.environment import Sea
 
 
 def test_values_are_toml_and_keys_are_dotted():
@@ -55,3 +56,29 @@ def test_recorded_wind_is_found_where_the_command_is_run(tmp_path, monkeypatch):
     assert load("landing", {"wind_trace": Path("wind.csv")}).air.trace == str(tmp_path / "wind.csv")
     with pytest.raises(ConfigurationError, match="leave out wind_mps and turbulence"):
         load("landing", {"wind_trace": Path("wind.csv"), "wind": 8.0})
+
+
+@pytest.mark.parametrize(
+    ("given", "sea"),
+    [
+        ({"sea": "3", "hull": 2.0}, {"state": "ss3", "hull_m": 2.0}),
+        ({"sea": "tank"}, {"state": "tank"}),
+        ({"sea": "0"}, {}),
+        ({"sea_trace": Path("deck.csv")}, {"trace": str(Path("deck.csv").resolve())}),
+    ],
+)
+def test_sea_is_that_of_the_options(given, sea):
+    assert load("landing", given).sea == Sea(**sea)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"sea": "7"}, "--sea '7': sea states are 0 \\(calm\\) to 4, or tank"),
+        ({"hull": 4.5}, "hull_m has no effect on a calm sea"),
+        ({"sea": "2", "sea_trace": Path("deck.csv")}, "leave out state = 'ss2'"),
+    ],
+)
+def test_sea_that_is_none_is_refused(given, message):
+    with pytest.raises(ConfigurationError, match=message):
+        load("landing", given)

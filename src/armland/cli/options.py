@@ -147,6 +147,17 @@ FLOWN = {
     "wind_trace": option(
         Path | None, "Recorded wind at the UAV instead: CSV with time_s, x, y, z in m/s, world axes.", metavar="FILE"
     ),
+    "sea": option(
+        str | None,
+        "Sea state 0 to 4, or tank: the deck moves as a hull in waves does; see docs/sea.md.",
+        metavar="0-4|tank",
+    ),
+    "hull": option(float | None, "Length in m of the hull that carries the arm, 4 if absent.", metavar="M"),
+    "sea_trace": option(
+        Path | None,
+        "Recorded motion of the deck instead: CSV with time_s, heave_m, roll_deg and so on.",
+        metavar="FILE",
+    ),
     "seeds": option(int, "Fly this many seeds and print how many succeed.", default=1, min=1, max=1_000_000),
     "jobs": option(int | None, "Flights of a campaign at a time; one per core if absent.", min=1, max=1000),
     **MADE,
@@ -195,12 +206,33 @@ def arm_settings(given: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
+def sea_settings(given: dict[str, Any]) -> dict[str, Any]:
+    """The keys of `[sea]` that `--sea`, `--hull` and `--sea-trace` set.
+
+    Raises:
+        ConfigurationError: a sea state that there is not.
+    """
+    out: dict[str, Any] = {}
+    if (state := given.get("sea")) is not None:
+        known = {"0": "calm", **{str(i): f"ss{i}" for i in range(1, 5)}, "calm": "calm", "tank": "tank"}
+        if state not in known:
+            raise ConfigurationError(
+                f"--sea {state!r}: sea states are 0 (calm) to 4, or tank: a floating platform's own motion"
+            )
+        out["state"] = known[state]
+    if given.get("hull") is not None:
+        out["hull_m"] = float(given["hull"])
+    if given.get("sea_trace") is not None:
+        out["trace"] = str(given["sea_trace"].resolve())
+    return {"sea": out} if out else {}
+
+
 def load(name: str, given: dict[str, Any]) -> "Scenario":
     """The scenario `name` with what the command line replaces.
 
     Args:
         name: file, or name of one that comes with armland.
-        given: options of `MADE`, and `DEVIATION` and those of the wind where the command has them.
+        given: options of `MADE`, and `DEVIATION` and those of wind and sea where the command has them.
 
     Raises:
         ConfigurationError: all that is wrong with it.
@@ -224,6 +256,7 @@ def load(name: str, given: dict[str, Any]) -> "Scenario":
         update(overrides, {"air": {"wind_mps": float(given["wind"]), **turbulence}})
     if given.get("wind_trace") is not None:
         update(overrides, {"air": {"trace": str(given["wind_trace"].resolve())}})
+    update(overrides, sea_settings(given))
     if given.get("uav") is not None:
         from armland.scenario.files.airframe import find_airframe
 

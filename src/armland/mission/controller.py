@@ -16,6 +16,7 @@ from armland.mission.reference.refer import refer
 from armland.mission.supervisor.limits import limit
 from armland.models.arm import Views
 from armland.models.chain import coriolis_wrench, feel, refresh
+from armland.models.environment import carry_along
 from armland.records import Record, Records, Tick
 from armland.rotations import Array
 
@@ -62,6 +63,8 @@ def refresh_arm(b: Record, path: Array, arm: Views) -> None:
         coriolis_wrench(arm, b.arm, twist, mu)
         for i in range(6):
             b.kept.estimate.mu[i] = mu[i]
+    if b.environment.moves:
+        carry_along(arm, b.environment, b.arm)
 
 
 @njit(cache=True)

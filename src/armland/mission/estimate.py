@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from armland.control.laws.attitude import QuaternionPdGains, initial_memory, quaternion_pd
-from armland.estimation import contact, disturbance, wrench
+from armland.estimation import contact, deck, disturbance, wrench
 from armland.estimation.plate import layouts
 from armland.linking import linked, named
 from armland.mission.load import estimate_load
@@ -42,6 +42,7 @@ def told_layout() -> np.dtype:
     return np.dtype(
         [
             ("tick_s", "f8"),
+            ("gravity", "f8", (3,)),  # m/s² [W]
             ("fused", "i8"),  # 1: plate and attitude by the pose filter; 0: attitude as received, plate on the arm
             ("velocity_terms", "i8"),  # 1: the arm model evaluates C φ̇ and 𝒥̇ φ̇
             ("coriolis", "i8"),  # 1: μ ẋ_d is fed forward
@@ -115,16 +116,22 @@ def kept_layout(joints: int) -> np.dtype:
             ("contact", contact.kept_layout()),
             ("load", contact.load_layout()),
             ("observer", disturbance.kept_layout()),
+            ("deck", deck.kept_layout()),
         ]
     )
 
 
 @njit(cache=True)
 def screen(b: Record) -> None:
-    """Screen the measurement of the board `b`, and remember how many of its numbers could not be used."""
-    p, s = b.told.estimate, b.kept.estimate
+    """Screen the measurement of the board `b`, and remember how many of its numbers could not be used; know where the deck is."""
+    m, p, s = b.tick.measurement, b.told.estimate, b.kept.estimate
     held = b.kept.decide.held == 1
-    s.bad = screened(b.tick.measurement, s.good, s.same, held, p.joint_leap, p.attitude_leap, p.tick_s)
+    if m.deck_known:
+        deck.as_sent(m, s.good)
+    s.bad = screened(m, s.good, s.same, held, p.joint_leap, p.attitude_leap, p.tick_s)
+    if m.deck_known:
+        deck.know_deck(m, p.gravity, p.tick_s, s.deck, b.environment)
+        deck.turn_into_deck(m, b.environment, p.tick_s)
 
 
 @linked(lambda n: (named("board", n),))

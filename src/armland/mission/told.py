@@ -111,6 +111,7 @@ def tell(t: Telling) -> Records:
 
 def _estimate(p: Records, t: Telling) -> None:
     s, hinged = t.scenario, t.hinged
+    p["gravity"] = s.environment.gravity_mps2
     p["tick_s"], p["fused"], p["coriolis"] = t.tick_s, not hinged, hinged and s.control.coriolis_feedforward
     p["velocity_terms"] = t.switches.acceleration == "implied"
     p["joint_leap"] = np.inf if hinged else JOINT_LEAP_RAD_S * t.tick_s

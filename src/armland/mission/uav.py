@@ -133,7 +133,15 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
         s.thrust = c.thrust if row.held else p.hinged
     s.alone = s.alone + 1 if c.uav_mode == MODE_AUTONOMOUS else 0
     s.sought = s.sought if s.alone > 0 else 0
-    _send(conjugate(align), s, c)
+    _send(_to_own(align, b.environment), s, c)
+
+
+@njit(cache=True)
+def _to_own(align: Array, environment: Record) -> Array:
+    # From the deck into the UAV's own idea of the inertial frame, in which it holds its attitude.
+    if environment.moves:
+        return multiply(environment.base_quat.copy(), conjugate(align))
+    return conjugate(align)
 
 
 @njit(cache=True)

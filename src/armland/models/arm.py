@@ -209,7 +209,12 @@ def _views(model: mujoco.MjModel, data: mujoco.MjData) -> Views:
     site = model.site(EE_SITE).id
     pose = (data.site_xpos[site], data.site_xmat[site])
     where = (model._address, data._address, data.qpos, data.qvel, model.opt.gravity, data.xaxis, data.xanchor)
-    return Views(*where, *pose, data.subtree_com, data.M, np.zeros(model.nv), _constants(model, site))
+    of_bodies = data.xipos, data.ximat, model.body_mass, model.body_inertia, _behind(model)
+    return Views(*where, *pose, data.subtree_com, data.M, np.zeros(model.nv), _constants(model, site), *of_bodies)
+
+
+def _behind(model: mujoco.MjModel) -> Array:
+    return np.stack([_ancestors(model, body) for body in range(model.nbody)], axis=1).astype(float)
 
 
 def _constants(model: mujoco.MjModel, site: int) -> Records:

@@ -92,6 +92,16 @@ class Views(NamedTuple):
     """C φ̇ + g (n,), N·m."""
     constants: Records
     """(1,) of `constants_layout`."""
+    com: Array
+    """Centre of mass of each body (bodies, 3), m, axes of the arm's base."""
+    principal: Array
+    """Rotation (bodies, 9) to its principal axes."""
+    mass: Array
+    """(bodies,), kg."""
+    moments: Array
+    """Principal moments of inertia (bodies, 3), kg·m²."""
+    behind: Array
+    """(n, bodies), 1 where the joint moves the body, else 0."""
 
 
 @njit(cache=True)

@@ -23,6 +23,7 @@ from armland.plant.devices import (
 )
 from armland.plant.faults import effects, intrusions
 from armland.plant.noise import BLOCK, Noise
+from armland.plant.sea import deck, reference
 from armland.plant.world import world_layout
 from armland.records import Record, layout
 from armland.rotations import Array
@@ -42,16 +43,22 @@ class Views(NamedTuple):
     xipos: Array
     dof_frictionloss: Array
     dof_solimp: Array
+    qpos: Array
+    qvel: Array
+    qfrc_applied: Array
+    qfrc_bias: Array
 
 
-VIEWS = types.NamedTuple((VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX), Views)
+VIEWS = types.NamedTuple((VECTOR, VECTOR, *4 * (MATRIX,), VECTOR, MATRIX, *4 * (VECTOR,)), Views)
 NOISE = types.NamedUniTuple(MATRIX, len(Noise._fields), Noise)
 
 
 def views_of(model: mujoco.MjModel, data: mujoco.MjData) -> Views:
     """The views of a model and its data."""
     seen = (data.sensordata, data.ctrl, data.xfrc_applied, data.geom_xpos, data.geom_xmat, data.xipos)
-    return Views(*seen, model.dof_frictionloss, model.dof_solimp)
+    return Views(
+        *seen, model.dof_frictionloss, model.dof_solimp, data.qpos, data.qvel, data.qfrc_applied, data.qfrc_bias
+    )
 
 
 def _seen(n: int) -> tuple:
@@ -85,6 +92,8 @@ def sense(k: int, world: Record, views: Views, noise: Noise, measurement: Record
         chance = noise.flip[row, 0]
         given = head(measurement), head(truth)
         camera.look(k, told.camera, kept.camera, what_fails.camera, noise.camera[row], *given, chance)
+    if told.reference.fitted:
+        reference.sample(k, told.reference, kept.reference, noise.reference[row], measurement, truth)
     measurement.magnet_force, measurement.magnet_fault = kept.magnet.report, kept.magnet.fault
     truth.touching = kept.magnet.touching
     if told.faults.count > 0:
@@ -101,7 +110,7 @@ def actuate(k: int, world: Record, views: Views, noise: Noise, phase: int, comma
     Args:
         k: present tick.
         world: of `world.world_layout`, updated.
-        views: of MuJoCo's arrays; `ctrl`, `xfrc_applied` and the joints' friction are written.
+        views: of MuJoCo's arrays; `ctrl`, `xfrc_applied`, the joints' friction and the deck's state are written.
         noise: whose block holds tick k.
         phase: number of the mission's phase, by which faults are armed.
         command: of the tick.
@@ -138,6 +147,8 @@ def actuate(k: int, world: Record, views: Views, noise: Noise, phase: int, comma
     brake.brake(k, command.brake, told.brake, kept.brake, views.dof_frictionloss, views.dof_solimp)
     if told.faults.count > 0:
         intrusions.push(told.faults, kept.faults, views.xfrc_applied)
+    if told.deck.moves:
+        deck.move(told.deck, noise.deck[row], views.qpos, views.qvel, views.qfrc_applied, views.qfrc_bias)
     return APPLIED
 
 

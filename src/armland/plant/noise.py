@@ -17,7 +17,7 @@ CAMERA_WIDTH = 12
 
 
 class Noise(NamedTuple):
-    """Standard normal numbers of all devices, arrays (BLOCK, width); tick k uses row k % BLOCK. The last array is not drawn."""
+    """Standard normal numbers of all devices, arrays (BLOCK, width); tick k uses row k % BLOCK. The last two arrays are not drawn."""
 
     encoders: Array
     """(BLOCK, 2n): positions, then velocities."""
@@ -41,8 +41,12 @@ class Noise(NamedTuple):
     """(BLOCK, 1): whether the camera takes the second solution of a pose."""
     turbulence: Array
     """(BLOCK, 5): along the mean wind 1, across it 2, upwards 2."""
+    reference: Array
+    """(BLOCK, 12): attitude, rates, velocity, acceleration of the deck."""
     wind: Array
     """(BLOCK, 3) m/s, W: what `wind.timed` knows of these ticks."""
+    deck: Array
+    """(BLOCK, 18) m, rad, per s and s²: what `sea.timed` knows of them."""
 
 
 def stream(seed: int, name: str) -> np.random.Generator:
@@ -59,7 +63,7 @@ class NoiseSource:
     """
 
     def __init__(self, seed: int, joints: int) -> None:
-        widths = (2 * joints, 6, 6, 3, CAMERA_WIDTH, 4, 3, joints, 3, 1, 5, 3)
+        widths = (2 * joints, 6, 6, 3, CAMERA_WIDTH, 4, 3, joints, 3, 1, 5, 12, 3, 18)
         self._seed = seed
         self.rows = Noise(*(np.zeros((BLOCK, width)) for width in widths))
         self.generators: tuple[np.random.Generator, ...] = ()
@@ -67,11 +71,11 @@ class NoiseSource:
 
     def restart(self) -> None:
         """Put all streams to their begin; the block stays as it is until `draw`."""
-        self.generators = tuple(stream(self._seed, name) for name in Noise._fields[:-1])
+        self.generators = tuple(stream(self._seed, name) for name in Noise._fields[:-2])
 
     def draw(self) -> None:
         """Replace the block, in place."""
-        for generator, rows in zip(self.generators, self.rows[:-1], strict=True):
+        for generator, rows in zip(self.generators, self.rows[:-2], strict=True):
             generator.standard_normal(out=rows)
 
 

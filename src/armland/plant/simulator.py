@@ -23,6 +23,8 @@ from armland.plant.faults import table as faults
 from armland.plant.noise import BLOCK, Noise, NoiseSource
 from armland.plant.pictures import Photographer, Pictures
 from armland.plant.scene.composition import Scene, build_scene
+from armland.plant.scene.deck import settle_solver
+from armland.plant.sea.timed import on_deck, timed_deck, velocity_on_deck
 from armland.plant.wind.limits import lift_gain, steady_wind
 from armland.plant.wind.timed import timed_wind
 from armland.plant.world import build_world
@@ -69,7 +71,7 @@ class Simulator:
             self._deviate()
         self.views: Views = views_of(self.scene.model, self.data)
         self.noise_source = NoiseSource(scenario.run.seed, self.scene.joints)
-        self.tick, self.timed_wind = 0, timed_wind(scenario)
+        self.tick, self.timed_wind, self.timed_deck = 0, timed_wind(scenario), timed_deck(scenario)
         self._home = np.asarray(home, dtype=float)
         self._applied: Records = np.zeros(1, layout("command", self.scene.joints))
         self._pictures = Pictures(photographer) if photographer is not None else None
@@ -82,6 +84,7 @@ class Simulator:
         self.deviations = drawn(self.scenario, self.scene.joints)
         if self.deviations:
             self.scene = deviate_bodies(self.deviations, self.scenario, self.scene)
+            settle_solver(self.scene.model)
             deviate_devices(self.deviations, self.scenario, self.scene, self.world["told"])
 
     @property
@@ -105,6 +108,8 @@ class Simulator:
         mujoco.mj_resetData(m, d)
         self._forget()
         d.qpos[s.joint_qpos] = self._home
+        if len(self.timed_deck):
+            d.qpos[s.deck_qpos :][:6], d.qvel[s.deck_dof :][:6] = self.timed_deck[0, :6], self.timed_deck[0, 6:12]
         if self.start == "hinged":
             self._hinge()
         else:
@@ -141,6 +146,8 @@ class Simulator:
         flying, gravity = self.start == "air", -self.scenario.environment.gravity_mps2[2]
         pivot = drawn.position if flying else s.put_down + [0.0, 0.0, 2e-4]
         quat = from_rotation_vector(np.array([0.0, 0.0, drawn.heading if flying else 0.0]))
+        if len(self.timed_deck):
+            pivot, quat = on_deck(self.timed_deck[0], pivot, quat, level=flying)
         told, weight = self.world["told"], float(s.model.body_subtreemass[s.uav_body]) * gravity
         believed, factor = (
             told["onboard"]["mass"][0],
@@ -167,6 +174,8 @@ class Simulator:
             seen = matrix(multiply(told["imu"]["bias"][0], quat))[:, 2]
             kept["onboard"]["integral"][0, :2] = np.linalg.norm(lift) / (believed * factor) * seen[:2]
         kept["link"]["arrived"]["mode"] = UavMode.AUTONOMOUS if flying else UavMode.OFF
+        if not flying and len(self.timed_deck):
+            d.qvel[s.uav_dof] = velocity_on_deck(self.timed_deck[0], d.qpos[s.uav_qpos[:3]], matrix(quat))
         if flying:
             d.qvel[s.uav_dof[:3]] = drawn.velocity
             self._spin(pull / factor, weight, factor)
@@ -190,9 +199,10 @@ class Simulator:
     def draw_noise(self) -> None:
         """Draw the next block of noise."""
         self.noise_source.draw()
-        if len(self.timed_wind):
-            ticks = np.arange(self.tick, self.tick + BLOCK)
-            self.noise.wind[:] = self.timed_wind[np.minimum(ticks, len(self.timed_wind) - 1)]
+        ticks = np.arange(self.tick, self.tick + BLOCK)
+        for rows, timed in ((self.noise.wind, self.timed_wind), (self.noise.deck, self.timed_deck)):
+            if len(timed):
+                rows[:] = timed[np.minimum(ticks, len(timed) - 1)]
 
     def read(self, tick: Tick) -> None:
         """Fill measurement and truth of `tick`."""

@@ -10,13 +10,14 @@ from armland.rotations import Array, matrix
 SENSORS = ("r", "v", "r_cm", "v_cm", "quat", "gyro", "ee_pos", "ee_vel", "ee_quat", "hinge_force")
 FOUL = ("arm_cradle_force", "arm_floor_force", "arm_uav_force", "plate_cradle_force", "ground_force")
 CONTACTS = ("cradle_force", *FOUL)
-"""Where a scene has no such contact, the force is zero."""
+DECK = ("deck_pos", "deck_quat", "deck_vel", "deck_rate", "deck_acc", "deck_alpha")
+"""Where a scene has no such contact, the force is zero; where it has no deck, the deck is at rest in W."""
 
 
 def told_layout(joints: int) -> np.dtype:
     """Addresses in sensordata, and how the hinge's sensor speaks."""
-    names = ("q", "tau", *SENSORS, *CONTACTS, "plate_quat", "hinge_quat")
-    return np.dtype([*((name, "i8") for name in names), ("hinge_sign", "f8")])
+    names = ("q", "tau", *SENSORS, *CONTACTS, *DECK, "plate_quat", "hinge_quat")
+    return np.dtype([*((name, "i8") for name in names), ("hinge_sign", "f8"), ("gravity", "f8", (3,))])
 
 
 def tell(told: Records, scene: Scene) -> None:
@@ -25,7 +26,8 @@ def tell(told: Records, scene: Scene) -> None:
     told["q"], told["tau"] = scene.sensor[f"q_{first}"], scene.sensor[f"tau_{first}"]
     for name in SENSORS:
         told[name] = scene.sensor[name]
-    for name in CONTACTS:
+    told["gravity"] = scene.model.opt.gravity
+    for name in (*CONTACTS, *DECK):
         told[name] = scene.sensor.get(name, -1)
     free = scene.bond == "free"
     # A hinge's lower half that is fixed to the arm turns with the end effector.
@@ -60,6 +62,7 @@ def record(k: int, data: Array, told: Record, rotors: Record, mixer: Array, t: R
     _take(data, told.quat, t.quat)
     _take(data, told.plate_quat, t.plate_quat)
     _take(data, told.ee_quat, t.ee_quat)
+    _look_at_deck(data, told, t)
     t.rotor_thrust = rotors.lift
     _forces(data, told, t)
     for i in range(3):
@@ -73,6 +76,21 @@ def record(k: int, data: Array, told: Record, rotors: Record, mixer: Array, t: R
 def _take(data: Array, at: int, out: Array) -> None:
     for i in range(out.shape[0]):
         out[i] = data[at + i]
+
+
+@njit(cache=True)
+def _look_at_deck(data: Array, told: Record, t: Record) -> None:
+    t.deck_quat[0] = 1.0
+    if told.deck_pos < 0:
+        return
+    _take(data, told.deck_pos, t.deck)
+    _take(data, told.deck_quat, t.deck_quat)
+    _take(data, told.deck_vel, t.deck_v)
+    _take(data, told.deck_rate, t.deck_omega)
+    _take(data, told.deck_acc, t.deck_a)
+    _take(data, told.deck_alpha, t.deck_alpha)
+    for i in range(3):
+        t.deck_a[i] += told.gravity[i]
 
 
 @njit(cache=True)

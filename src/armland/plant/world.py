@@ -23,6 +23,7 @@ from armland.plant.devices import (
 from armland.plant.draw import Draw, Start
 from armland.plant.faults import table as faults
 from armland.plant.scene.composition import Scene
+from armland.plant.sea import deck, reference
 from armland.records import Records
 from armland.scenario import Scenario
 
@@ -40,14 +41,12 @@ TOLD = {
     "magnet": magnet,
     "faults": faults,
     "air": air,
+    "deck": deck,
+    "reference": reference,
 }
 """Devices that are told something, by the name of their sub-record."""
 
-KEPT = {
-    name: device
-    for name, device in TOLD.items()
-    if name in ("wrench", "imu", "link", "onboard", "rotors", "motors", "brake", "camera", "magnet", "faults", "air")
-}
+KEPT = {name: device for name, device in TOLD.items() if name not in ("truth", "encoders", "deck")}
 """Devices that keep something."""
 
 
@@ -94,4 +93,6 @@ def build_world(scenario: Scenario, scene: Scene, start: Start, drawn: Draw, pha
     magnet.tell(t["magnet"], scenario, scene)
     faults.tell(t["faults"], scenario, scene, phases)
     air.tell(t["air"], scenario, scene)
+    deck.tell(t["deck"], scene)
+    reference.tell(t["reference"], scenario, scene, noisy)
     return world

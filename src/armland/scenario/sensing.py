@@ -63,6 +63,22 @@ class Camera(Section):
         return problems
 
 
+class MotionReference(Section):
+    """Motion reference unit beside the arm's base, where the sea moves the deck: on land there is none. Biases: standard deviations."""
+
+    rate_hz: of.Rate = key(100, "samples a second, Seatex MRU 5; divides the base rate")
+    delay_ms: of.Milliseconds = key(10.0, "from sampling to arrival; assumption")
+    tilt_deg: SmallAngle = key(0.03, "error of roll and pitch that stays for a run; MRU 5, dynamic accuracy")
+    heading_deg: SmallAngle = key(0.5, "likewise of the heading; assumption")
+    tilt_noise_deg: SmallAngle = key(0.005, "noise of a sample's attitude; assumption")
+    rate_bias_dps: of.Sigma = key(0.003, "error of the rates, deg/s, that stays; 10 deg/h, MTi-300")
+    rate_noise_dps: of.Sigma = key(0.07, "noise of a sample's rates, deg/s; 0.01 deg/s/√Hz over 50 Hz, MTi-300")
+    velocity_mps: of.Speed = key(0.02, "error of the velocity that stays; assumption")
+    velocity_noise_mps: of.Speed = key(0.003, "noise of a sample's velocity; assumption")
+    acceleration_bias_mps2: of.Sigma = key(0.01, "error of the acceleration, m/s², that stays; assumption: 1 mg")
+    acceleration_noise_mps2: of.Sigma = key(0.0042, "noise of a sample's, m/s²; 60 µg/√Hz over 50 Hz, MTi-300")
+
+
 class Imperfections(Section):
     """What is wrong for one seed and not for another: drawn within these bounds. Where the UAV is at the start is in `place`."""
 

@@ -10,14 +10,14 @@ from armland.scenario import quantities as of
 from armland.scenario.arm import Arm, Tool
 from armland.scenario.control import Control, Experiment
 from armland.scenario.deviation import Deviation
-from armland.scenario.environment import Air, Disturbance, Environment
+from armland.scenario.environment import Air, Disturbance, Environment, Sea
 from armland.scenario.estimation import Estimation
 from armland.scenario.faults import Fault
 from armland.scenario.gear import Cradle, Hinge, Magnet, Plate, Skids
 from armland.scenario.mission import Bounds, Limits, Place, Run, Trajectory
 from armland.scenario.quantities import Section, key
 from armland.scenario.refusal import problems, refusal
-from armland.scenario.sensing import Camera, Imperfections, Sensors
+from armland.scenario.sensing import Camera, Imperfections, MotionReference, Sensors
 from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.uav import Link, Onboard, Rotors, Uav
 
@@ -35,11 +35,12 @@ HARDWARE = (
     "onboard",
     "link",
     "sensors",
+    "motion_reference",
     "environment",
 )
 """Sections of which the controller has a belief of its own."""
 
-PLANT_ONLY = ("imperfections", "deviation", "disturbance", "air", "faults")
+PLANT_ONLY = ("imperfections", "deviation", "disturbance", "air", "sea", "faults")
 """Sections that the controller never sees."""
 
 
@@ -76,11 +77,13 @@ class Scenario(Section):
     onboard: Onboard = Onboard()
     link: Link
     sensors: Sensors = Sensors()
+    motion_reference: MotionReference = MotionReference()
     environment: Environment = Environment()
     imperfections: Imperfections = Imperfections()
     deviation: Deviation = Deviation()
     disturbance: Disturbance = Disturbance()
     air: Air = Air()
+    sea: Sea = Sea()
     control: Control = Control()
     estimation: Estimation = Estimation()
     place: Place = Place()
@@ -194,6 +197,7 @@ def _problems(s: Scenario) -> list[str]:
     # What contradicts itself across sections.
     problems, rate = [], s.run.rate_hz
     devices = {"onboard.rate_hz": s.onboard.rate_hz, "link.rate_hz": s.link.rate_hz}
+    devices["motion_reference.rate_hz"] = s.motion_reference.rate_hz
     devices["control.station.rate_hz"] = s.control.station.rate_hz
     for name, experiment in s.experiments.items():
         if experiment.onboard is not None:

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from armland.experiments.judge.brief import Brief, brief_of
+from armland.experiments.judge.deck import seen_from_deck
 from armland.runtime.log import Log
 
 Ticks = Mapping[str, NDArray[np.void]]  # Messages by name, (ticks,) each
 
 
 class Flown(NamedTuple):
-    """A run."""
+    """A run; its truth as the deck sees it."""
 
     name: str  # Of the experiment, or of the mission where it has none
     ticks: Ticks
@@ -32,4 +33,4 @@ def flown(log: Log) -> Flown:
         LogError: its metadata lacks something; it is of an older version or of another program.
     """
     brief = brief_of(log.metadata)
-    return Flown(log.metadata.get("experiment") or brief.mission, log.messages, brief)
+    return Flown(log.metadata.get("experiment") or brief.mission, seen_from_deck(log.messages), brief)

@@ -37,6 +37,9 @@ same keys does in a scenario's file.
 
 `armland COMMAND --wind 4` flies in wind of 4 m/s at 20 ft with turbulence; `armland COMMAND --wind-trace wind.csv` in a recorded one.
 
+`armland COMMAND --sea 2 --hull 4` flies over a deck on a hull of 4 m in sea state 2; `armland COMMAND --sea-trace deck.csv` over a
+recorded one.
+
 `armland COMMAND --law my_file.py:my_law` controls the held UAV by your own law.
 
 `armland COMMAND --seeds 200` flies 200 seeds over all cores: spread of each figure beside its bound, campaign.json, one page.
@@ -116,6 +119,7 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
 def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> NoReturn:
     from armland.experiments.episode import fly_prepared
     from armland.experiments.judge.brief import brief_of
+    from armland.experiments.judge.deck import seen_from_deck
     from armland.records import MESSAGES
     from armland.runtime.log import read_log
     from armland.view.flown import Flown
@@ -129,7 +133,9 @@ def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Cons
         file = results.folder / name if given["log"] else results.scratch(name) if given["figures"] else None
         with phases_told(console, mission) as tell:
             episode = fly_prepared(flight, file, tell)
-        run = Flown(mission, {name: episode.ticks[name] for name in MESSAGES}, brief_of(episode.metadata))
+        run = Flown(
+            mission, seen_from_deck({name: episode.ticks[name] for name in MESSAGES}), brief_of(episode.metadata)
+        )
         return Work(
             episode.result["success"],
             episode.result,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from armland.errors import ConfigurationError
 from armland.experiments.judge.brief import Brief, Ticks
+from armland.experiments.judge.deck import seen_from_deck
 from armland.experiments.judge.figures import MEASURES, NAMES, Figures
 from armland.experiments.judge.limits import Excess, excesses, held_figures
 from armland.experiments.judge.limits import in_words as exceeded_in_words
@@ -109,6 +110,7 @@ def check_kind(mission: Mission) -> None:
 
 def judge(ticks: Ticks, brief: Brief) -> Judgement:
     """Judge a flight; of a log that was read back, by its messages and `brief_of` its metadata."""
+    ticks = seen_from_deck(ticks)
     figures = {name: MEASURES[name](ticks, brief) for name in KINDS[brief.judged_as].measures}
     violated, truth = excesses(ticks, brief), ticks["truth"]
     why = list(_complaints(ticks, brief, figures, violated))

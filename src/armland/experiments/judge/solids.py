@@ -18,6 +18,7 @@ import numpy as np
 from armland.models.arm_file.spec import PREFIX, SHAPE
 from armland.models.arm_file.strength import poses
 from armland.plant.scene.composition import Scene
+from armland.plant.scene.deck import DECK, moves
 
 UAV, TOOL, FLOOR = "uav/uav", "armland_tool", "floor"
 
@@ -38,6 +39,9 @@ def solids_of(scene: Scene) -> str:
     spec.compiler.degree = False
     model = scene.model
     bodies = {0: spec.worldbody}
+    if moves(model):
+        # Seen from the deck nothing but arm and UAV moves.
+        bodies[model.body(DECK).id] = spec.worldbody
     for body in range(1, model.nbody):
         name = model.body(body).name
         if name.startswith((PREFIX, "armland_")):

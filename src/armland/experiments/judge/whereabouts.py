@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from armland.experiments.judge.brief import Brief, Ticks
+from armland.experiments.judge.deck import deck_speed
 from armland.rotations import Array
 
 FLYING_SPEED_MPS = 0.6  # A UAV that flies off by itself is not faster, unless the arm has given it more
@@ -37,7 +38,9 @@ def state_of(ticks: Ticks, brief: Brief) -> str:
     speed, tilt = np.linalg.norm(late["v"], axis=1).max(), tilt_deg(late["quat"]).max()
     if brief.start == "hinged":
         return "held" if tilt < TOPPLED_DEG else "lost"
-    if truth["v"][:, 2].min() < -FALL_MPS:
+    # What hovers in the world moves against a deck that heaves.
+    deck = deck_speed(truth)
+    if truth["v"][:, 2].min() < -FALL_MPS - deck:
         return "lost"
     if speed < STILL_MPS and late["cradle_force"][:, 2].min() > least(CARRIED_N, CARRIED_SHARE, brief):
         return "standing"
@@ -45,7 +48,7 @@ def state_of(ticks: Ticks, brief: Brief) -> str:
     toppled = late["foul"][:, 2].any() or tilt > LEANING_DEG
     if speed < BALANCED_MPS and late["touching"].min() == 4 and not toppled:
         return "held"
-    allowed = max(FLYING_SPEED_MPS, 0.25 + float(np.linalg.norm(brief.given)))
+    allowed = max(FLYING_SPEED_MPS, 0.25 + float(np.linalg.norm(brief.given))) + deck
     if late["r"][:, 2].min() > LOW_M and speed < allowed and tilt < TOPPLED_DEG:
         return "flying"
     return "lost"

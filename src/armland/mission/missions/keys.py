@@ -23,6 +23,8 @@ GEAR = (
         "imperfections",
         "deviation",
         "air",
+        "sea",
+        "motion_reference",
         "bounds",
         "estimation",
         "limits",

@@ -29,7 +29,7 @@ from armland.plant.wind.profile import (
     towards,
 )
 from armland.records import Record, Records
-from armland.rotations import Array
+from armland.rotations import Array, matrix
 from armland.scenario import Scenario
 
 CORRELATED_S = 1.0
@@ -130,9 +130,12 @@ def blow(told: Record, kept: Record, faults: Record, given: tuple[Array, Array, 
         _blow_on(told, kept, fresh, known, t)
     kept.begun = 1
     if told.ground > 0.0:
-        near = gain(t.r_cm[2], told.radius)
+        height, R = 0.0, matrix(t.deck_quat)
+        for i in range(3):
+            height += R[i, 2] * (t.r_cm[i] - t.deck[i])
+        near = gain(height, told.radius)
         if np.isfinite(told.rails):
-            near += OVER_RAILS * gain(t.r_cm[2] - told.rails, told.radius)
+            near += OVER_RAILS * gain(height - told.rails, told.radius)
         kept.lift += told.ground * near
 
 

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 
 from armland.models.description import compile_spec
+from armland.plant.scene.deck import DECK
 from armland.rotations import Array
 
 LINK_RADIUS_M = 0.06
@@ -51,9 +52,16 @@ def scale_inertia(model: mujoco.MjModel, scale: float, joints: list[int]) -> Non
     """
     if scale == 1.0:
         return
-    root = int(model.body_rootid[model.jnt_bodyid[joints[0]]])
-    for body in range(model.nbody):
-        if int(model.body_rootid[body]) == root and not model.body(body).name.startswith("uav/"):
+    stands_on = {0, *(b for b in range(model.nbody) if model.body(b).name == DECK)}
+    root = int(model.jnt_bodyid[joints[0]])
+    while (parent := int(model.body_parentid[root])) not in stands_on:
+        root = parent
+    arm = {root}
+    for body in range(root + 1, model.nbody):
+        if int(model.body_parentid[body]) in arm:
+            arm.add(body)
+    for body in sorted(arm):
+        if not model.body(body).name.startswith("uav/"):
             model.body_mass[body] *= scale
             model.body_inertia[body] *= scale
     model.dof_armature[model.jnt_dofadr[joints]] *= scale

@@ -5,10 +5,12 @@
 | `hinged` | by the spherical hinge on the arm's end effector, for good: the paper's demonstrator | none: nothing touches |
 | `free` | not at all: flies, is gripped at its hinge plate, stands on its skids | `magnet`, `camera`, `cradle`, each optional |
 
-Another kind of catcher, no arm at all, or a base that moves is one more branch of `scene_spec`. Shapes never collide by MuJoCo's
+Where the sea moves, arm, cradle and floor stand on a `deck`.
+Another kind of catcher, or no arm at all, is one more branch of `scene_spec`. Shapes never collide by MuJoCo's
 masks: what may touch is a table of explicit pairs (`contacts`).
 """
 
+import warnings
 from typing import Literal, NamedTuple
 
 import mujoco
@@ -18,6 +20,7 @@ from armland.models.description import compile_spec
 from armland.models.parameters import arm_spec
 from armland.plant.scene.arm import add_links, add_motors, scale_inertia
 from armland.plant.scene.contacts import add_contacts
+from armland.plant.scene.deck import JOINTS, moves, put_on_deck, settle_solver
 from armland.plant.scene.eye import mount_camera, mount_marker
 from armland.plant.scene.gear import add_cradle, add_tool, check_gear, couple, cradle_position
 from armland.plant.scene.sensors import add_sensors, sensor_addresses
@@ -51,6 +54,8 @@ class Scene(NamedTuple):
     uav_mass: float  # kg, with plate and load: what flies and what the cradle bears
     lever: Array  # (3,) m, B: centre of mass to the pivot
     put_down: Array  # (3,) m, D: pivot position with the UAV level on the rails; NaN where there is no cradle
+    deck_qpos: int  # first address of the deck's joints in qpos; −1 where there is no deck
+    deck_dof: int  # and in qvel
     sensor: dict[str, int]  # address of each sensor's first element in sensordata
 
 
@@ -67,9 +72,13 @@ def build_scene(scenario: Scenario, bond: Bond, parts: tuple[str, ...] = PARTS) 
         ConfigurationError: a cradle that would lie on the floor.
     """
     spec, joints = scene_spec(scenario, bond, parts)
-    model = compile_spec(spec, "the scene")
+    with warnings.catch_warnings():
+        # No other scene has the arm's names, and none is saved.
+        warnings.filterwarnings("ignore", message="Attaching a spec with an empty prefix")
+        model = compile_spec(spec, "the scene")
     set_stops(model, scenario.hinge)
     scale_inertia(model, scenario.arm.inertia_scale, [model.joint(name).id for name in joints])
+    settle_solver(model)
     return _scene(model, joints, scenario, bond, parts if bond == "free" else ())
 
 
@@ -77,10 +86,12 @@ def scene_spec(scenario: Scenario, bond: Bond, parts: tuple[str, ...] = PARTS) -
     """The scene, not yet compiled, and the names of the arm's joints; arguments and errors as for `build_scene`."""
     spec = arm_spec(scenario)
     joints = [j.name for j in spec.joints]
-    _set_options(spec, scenario, bond)
     uav = uav_spec(scenario)
     links = add_links(spec) if bond == "free" else []
     add_motors(spec)
+    if scenario.sea.moves and bond == "free":
+        spec = put_on_deck(spec)
+    _set_options(spec, scenario, bond)
     add_surroundings(spec)
     if bond == "hinged":
         hinge_on_arm(spec, uav, scenario.hinge)
@@ -135,6 +146,7 @@ def _scene(model: mujoco.MjModel, joints: list[str], scenario: Scenario, bond: B
     hinge = [model.joint(f"{UAV}{name}").id for name in (ON_UAV if bond == "free" else ON_ARM)]
     q, v, uav = model.jnt_qposadr, model.jnt_dofadr, model.body(f"{UAV}uav").id
     free = model.joint(f"{UAV}free").id if bond == "free" else -1
+    deck = model.joint(JOINTS[0]).id if moves(model) else -1
     pivot, skids = model.site(f"{UAV}pivot").pos, scenario.skids
     put_down = np.full(3, np.nan)
     if "cradle" in parts:
@@ -156,5 +168,7 @@ def _scene(model: mujoco.MjModel, joints: list[str], scenario: Scenario, bond: B
         uav_mass=float(model.body_subtreemass[uav]),
         lever=pivot - model.site(f"{UAV}cm").pos,
         put_down=put_down,
+        deck_qpos=int(q[deck]) if deck >= 0 else -1,
+        deck_dof=int(v[deck]) if deck >= 0 else -1,
         sensor=sensor_addresses(model),
     )

@@ -10,6 +10,7 @@ from armland.errors import ConfigurationError, ModelError
 from armland.plant.scene.arm import add_capsule
 from armland.plant.scene.closing import RATE, closing
 from armland.plant.scene.compliance import modes, rest_on_buffers
+from armland.plant.scene.deck import ground
 from armland.plant.scene.uav import PLATE
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -128,7 +129,7 @@ def add_cradle(spec: mujoco.MjSpec, scenario: Scenario, position: Array) -> None
     across = 0.5 * c.gap_m + c.radius_m
     half = 0.5 * np.deg2rad(c.heading_deg)
     place = {"pos": position, "quat": [np.cos(half), 0, 0, np.sin(half)]}
-    stand, body = spec.worldbody.add_body(name="stand", **place), spec.worldbody.add_body(name="cradle", **place)
+    stand, body = (ground(spec).add_body(name=name, **place) for name in ("stand", "cradle"))
     look = {"type": mujoco.mjtGeom.mjGEOM_CAPSULE, "rgba": [0.45, 0.48, 0.53, 1], "group": 2}
     for i, side in enumerate((-1.0, 1.0)):
         x, y, z = 0.5 * c.length_m, side * across, -c.radius_m

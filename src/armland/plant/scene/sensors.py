@@ -12,18 +12,29 @@
 | `magnet_force` | contact force of the face on the plate [W], without the magnet's pull: `xfrc_applied[plate_body]` holds that |
 | `cradle_force`, `ground_force` | contact force of the rails, of the floor on UAV and plate [W] |
 | `plate_cradle_force` | the share of `cradle_force` that bears on the plate [W] |
+| `deck_pos` `deck_quat`, `deck_vel` `deck_rate`, `deck_acc` `deck_alpha` | of the deck, if any [W]; `deck_acc` less gravity |
 | `arm_cradle_force`, `arm_floor_force`, `arm_uav_force` | contact forces of the arm on what it should not touch [W] |
 """
 
 import mujoco
 
 from armland.models.description import EE_SITE
+from armland.plant.scene.deck import DECK, ground
 from armland.plant.scene.uav import PLATE, UAV
 
 NET_FORCE = 3
 """MuJoCo's code for a contact sensor that sums up the forces of all its contacts, in world axes."""
 
 S, O = mujoco.mjtSensor, mujoco.mjtObj
+
+DECK_SENSORS = {
+    "deck_pos": S.mjSENS_FRAMEPOS,
+    "deck_quat": S.mjSENS_FRAMEQUAT,
+    "deck_vel": S.mjSENS_FRAMELINVEL,
+    "deck_rate": S.mjSENS_FRAMEANGVEL,
+    "deck_acc": S.mjSENS_FRAMELINACC,
+    "deck_alpha": S.mjSENS_FRAMEANGACC,
+}
 
 
 def add_sensors(spec: mujoco.MjSpec, joints: list[str], free: bool, cradle: bool, magnet: bool) -> None:
@@ -43,12 +54,14 @@ def add_sensors(spec: mujoco.MjSpec, joints: list[str], free: bool, cradle: bool
     ):
         for name, site in places.items():
             spec.add_sensor(name=name, type=kind, objtype=O.mjOBJ_SITE, objname=site)
+    if ground(spec) is not spec.worldbody:
+        for name, kind in DECK_SENSORS.items():
+            spec.add_sensor(name=name, type=kind, objtype=O.mjOBJ_XBODY, objname=DECK)
     if free:
-        _add_contact_sensors(spec, cradle, magnet)
+        _add_contact_sensors(spec, spec.joint(joints[0]).parent, cradle, magnet)
 
 
-def _add_contact_sensors(spec: mujoco.MjSpec, cradle: bool, magnet: bool) -> None:
-    arm = spec.joints[0].parent
+def _add_contact_sensors(spec: mujoco.MjSpec, arm: mujoco.MjsBody, cradle: bool, magnet: bool) -> None:
     arm.name = arm.name or "armland_arm"
     body, tree, uav = O.mjOBJ_BODY, O.mjOBJ_XBODY, f"{UAV}uav"
     for name, one, on, other, under, fitted in (

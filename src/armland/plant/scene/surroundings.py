@@ -3,6 +3,8 @@
 import mujoco
 import numpy as np
 
+from armland.plant.scene.deck import FLOOR_M, ground
+
 VIEWS = {
     "overview": ((1.42, -1.62, 1.25), (0.42, 0.04, 0.44), 30.0),
     "landing": ((1.65, -1.7, 1.2), (0.45, 0.0, 0.43), 32.0),
@@ -22,8 +24,10 @@ def add_surroundings(spec: mujoco.MjSpec) -> None:
     material = spec.add_material(name="floor", texrepeat=[4, 4], texuniform=True, specular=0.0)
     material.textures[int(mujoco.mjtTextureRole.mjTEXROLE_RGB)] = "floor"
     world = spec.worldbody
-    plane = mujoco.mjtGeom.mjGEOM_PLANE
-    world.add_geom(name="floor", type=plane, size=[0, 0, 0.1], material="floor", contype=0, conaffinity=0, group=2)
+    kind = {"type": mujoco.mjtGeom.mjGEOM_PLANE, "size": [0, 0, 0.1]}
+    if (under := ground(spec)) is not world:
+        kind = {"type": mujoco.mjtGeom.mjGEOM_BOX, "size": FLOOR_M, "pos": [0, 0, -FLOOR_M[2]], "mass": 0}
+    under.add_geom(name="floor", material="floor", contype=0, conaffinity=0, group=2, **kind)
     sun = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
     world.add_light(type=sun, pos=[0.2, -1.4, 2.5], dir=[0.05, 0.7, -1.0], diffuse=[0.48, 0.48, 0.46], castshadow=True)
     world.add_light(type=sun, pos=[1.0, 1.0, 2.0], dir=[-1.0, -0.6, -0.5], diffuse=[0.16, 0.17, 0.2], castshadow=False)

@@ -175,6 +175,8 @@ def _resolve_files(data: dict[str, Any], folder: Path) -> None:
         for section in ("arm", "uav"):
             _absolute(tables, section, "file", folder)
     _absolute(data, "air", "trace", folder)
+    for name in ("trace", "spectrum_file", "response_file"):
+        _absolute(data, "sea", name, folder)
     _absolute(data, "control", "law", folder)
     for name in experiments if isinstance(experiments, dict) else ():
         _absolute(experiments, name, "law", folder)
