@@ -60,6 +60,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
         Field("wrench", (6,), "N, N·m", "sensor", "force, torque of the flange on the tool at the sensor's origin"),
         Field("uav_quat", (4,), "1", "UAV's W<-B", "attitude as the UAV knows it, scalar first"),
         Field("uav_rate", (3,), "rad/s", "B", "UAV angular velocity"),
+        Field("uav_force", (3,), "m/s²", "B", "its specific force, mean over its sample; zeros where it sends none"),
         Field("uav_rotors", (MOST_ROTORS,), "N", "B", "thrust that the UAV says it asks of each rotor"),
         Field("uav_weak", (), "1", "-", "1 where the UAV says that a rotor gives less than its due", "i8"),
         Field("camera_position", (3,), "m", "camera", "marker's centre"),

@@ -23,6 +23,7 @@ GEAR = (
         "imperfections",
         "deviation",
         "air",
+        "forecast",
         "bounds",
         "estimation",
         "limits",
