@@ -33,6 +33,9 @@ more wind is expected."""
 MARKER_DEG, NEAR = 5.0, 0.5
 """Half of the marker as the camera sees it from where it waits; share of that height at which the UAV is right above the camera."""
 
+UNSEEN_S = 0.3
+"""Time without an image after which a UAV that is reckoned in wind rises."""
+
 ABOVE_M = 0.4
 """Height above its station at which a UAV that is lost is looked for first: there the cone is twice as wide."""
 
@@ -96,6 +99,9 @@ def in_view(e: Record, waits: bool, p: Record, s: Record) -> Array:
             place[i] += share * s.hovered[i]
         x, y = x - share * s.hovered[0], y - share * s.hovered[1]
     aside = np.hypot(x, y)
+    if v.leans and e.plate_age > UNSEEN_S:
+        # What is reckoned errs more by the second: away from arm and rails, and into the wider view.
+        place[2] += ABOVE_M
     needed = e.r[2] - v.line[2] + aside / v.cone
     place[2] = max(place[2], min(needed, v.highest))
     return place
