@@ -64,6 +64,7 @@ MESSAGES: dict[str, tuple[Field, ...]] = {
             "attitude as the UAV knows it, scalar first; on a moving deck turned into D",
         ),
         Field("uav_rate", (3,), "rad/s", "B", "UAV angular velocity; on a moving deck against it"),
+        Field("uav_force", (3,), "m/s²", "B", "its specific force, mean over its sample; zeros where it sends none"),
         Field("uav_rotors", (MOST_ROTORS,), "N", "B", "thrust that the UAV says it asks of each rotor"),
         Field("uav_weak", (), "1", "-", "1 where the UAV says that a rotor gives less than its due", "i8"),
         Field("camera_position", (3,), "m", "camera", "marker's centre"),

@@ -263,3 +263,32 @@ def test_force_is_averaged_where_it_is_waited_for(bench):
         bench.m["wrench"] = reading(bench, force + 5.0 * np.sin(0.1 * 2.0 * np.pi * k), np.zeros(3))
         estimate_load(False, True, 0.0, bench.b)
     np.testing.assert_allclose(known[0], force * (1.0 - np.exp(-3.0)), atol=0.1)
+
+
+def lifting(bench, gives, share, seconds):
+    """The command that is thought to carry the weight, over what does; in wind, where rotors give `gives` of what they are asked."""
+    weight, hover = bench.told["estimate"]["weight"][0], bench.kept["act"]["hover"]
+    bench.told["estimate"]["windy"] = 1
+    bench.enter("carry")
+    bench.e["thrust"], hover[0] = share * weight, weight
+    bench.e["r"][0, 2] = bench.told["decide"]["clear_z"][0] + 0.1
+    bench.m["wrench"] = reading(bench, np.array([0.0, 0.0, (1.0 - share * gives) * weight]), np.zeros(3))
+    for _ in range(round(1000 * seconds)):
+        estimate_load(False, True, 0.0, bench.b)
+    return hover[0] * gives / weight
+
+
+@pytest.mark.parametrize("gives", [0.85, 1.0, 1.4])
+def test_in_wind_the_hinge_says_what_the_rotors_make_of_a_command_and_the_weight_stays(bench, gives):
+    """Then load and thrust explain the hinge's force, and nobody else carries. Negative control: before, they do not."""
+    weight = bench.told["estimate"]["weight"][0]
+    assert lifting(bench, gives, 0.5, 3.0) == pytest.approx(1.0, abs=1e-3)
+    assert bench.kept["estimate"]["weight"][0] == weight
+    assert bench.e["ground_share"][0] == pytest.approx(0.0, abs=2e-3)
+    if gives != 1.0:
+        assert abs(lifting(bench, gives, 0.5, 0.01) - 1.0) > 0.1
+
+
+@pytest.mark.parametrize(("gives", "share"), [(1.0, 0.2), (0.3, 0.6)])
+def test_rotors_that_hardly_turn_or_lift_say_nothing_of_a_command(bench, gives, share):
+    assert lifting(bench, gives, share, 1.0) == pytest.approx(gives)

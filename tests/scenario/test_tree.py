@@ -158,6 +158,7 @@ def test_every_section_is_hardware_or_the_plants_own_or_the_controllers() -> Non
         "title",
         "calibration",
         "airframe",
+        "forecast",
         "run",
         "control",
         "estimation",

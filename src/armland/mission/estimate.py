@@ -53,6 +53,7 @@ def told_layout() -> np.dtype:
             ("body_mass", "f8"),  # kg, that the hinge carries
             ("lever", "f8", (3,)),  # m, CM to pivot [B]
             ("uplink", "i8"),  # ticks until a thrust command acts on board, as believed
+            ("windy", "i8"),  # 1: wind is expected, in which the lift of a held UAV is learnt and not its weight
             ("learns", "i8"),  # 1: uplink and weight are learnt in flight
             ("rotor_gain", "f8"),  # of the rotors' lag, per tick
             ("drag", "f8"),  # N·s/m, horizontal

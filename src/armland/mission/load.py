@@ -23,6 +23,9 @@ WEIGHED_S = 0.3
 MOST_ROTORS = 0.75
 """Share of the weight on the rotors above which too little is left to weigh."""
 
+LEAST_ROTORS = 0.25
+"""Share of the weight below which neither command nor lift say what the rotors make of a command."""
+
 LEARNT_SHARE = 0.4
 """Of the believed weight: how far from it the UAV's may be. Beyond, something else pulls or the load is gone."""
 
@@ -58,7 +61,10 @@ def estimate_load(free: bool, magnet: bool, retreat: float, b: Record) -> None:
         e.hinge_force[i] = force[i] if known else 0.0
         s.calm[i] = s.calm[i] + p.calm_gain * (e.hinge_force[i] - s.calm[i]) if p.calm_gain < 1.0 else e.hinge_force[i]
     if known and row.held and row.observe and p.learns and e.r[2] > b.told.decide.clear_z:
-        weigh(force[2], e.thrust / max(b.kept.act.hover, 1e-3), p, s)
+        if p.windy:
+            b.kept.act.hover = lift_felt(force[2], e.thrust, b.kept.act.hover, p)
+        else:
+            weigh(force[2], e.thrust / max(b.kept.act.hover, 1e-3), p, s)
 
 
 @njit(cache=True)
@@ -104,6 +110,26 @@ def weigh(force: float, rotors: float, p: Record, s: Record) -> None:
     found = force / (1.0 - rotors)
     if abs(found - p.weight) < LEARNT_SHARE * p.weight:
         s.weight += p.tick_s / WEIGHED_S * (found - s.weight)
+
+
+@njit(cache=True)
+def lift_felt(force: float, thrust: float, hover: float, p: Record) -> float:
+    """The command that would carry the weight of a UAV that hangs on the arm in wind, N: T W/(W − F_z), averaged.
+
+    There it is not the weight that is in doubt: level on the hinge the same command lifts up to 1.4 times as much as leaning in
+    free flight, since no wind blows down through the rotors, and gusts change it.
+
+    Args:
+        force: vertical hinge force, N.
+        thrust: that acts as far as is known, N.
+        hover: that command as it was known, N.
+        p: what the estimate is told.
+    """
+    lift = p.weight - force
+    if thrust < LEAST_ROTORS * p.weight or lift < LEAST_ROTORS * p.weight:
+        return hover
+    found = min(max(thrust * p.weight / lift, hover * (1.0 - LEARNT_SHARE)), hover * (1.0 + LEARNT_SHARE))
+    return hover + p.tick_s / WEIGHED_S * (found - hover)
 
 
 @njit(cache=True)

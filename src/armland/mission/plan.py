@@ -16,6 +16,7 @@ from armland.mission.feasibility.pace import paced
 from armland.mission.feasibility.path import survey_path
 from armland.mission.feasibility.reach import survey, targets
 from armland.mission.feasibility.touchdown import gently
+from armland.mission.feasibility.weather import judged, weathered
 from armland.mission.feasibility.weight import check_hinged_thrust, check_weight, flies_on
 from armland.mission.missions.takeoff import gives_speed
 from armland.mission.reference.path import Leg
@@ -150,6 +151,7 @@ def _path_plan(scenario: Scenario, mission: Mission, law: str | None, row: str) 
 def _flight_plan(scenario: Scenario, mission: Mission, law: str | None, trial: bool) -> Plan:
     arm, takes_off, run = arm_model(scenario), mission.start == "cradle", scenario.run
     flies = flyer(scenario)
+    mission, scenario = judged(mission, scenario, flies.weight), weathered(scenario, flies.mass)
     check_weight(scenario, flies, takes_off and flies_on(scenario), trial)
     if not takes_off:
         check_capture(scenario, flies.mass)

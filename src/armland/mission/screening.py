@@ -44,6 +44,7 @@ def screened(
     arm = kept_finite(m.q, good.q) + kept_finite(m.qd, good.qd)
     wrench = kept_finite(m.wrench, good.wrench)
     uav = kept_finite(m.uav_quat, good.uav_quat) + kept_finite(m.uav_rate, good.uav_rate)
+    uav += kept_finite(m.uav_force, good.uav_force)
     m.arm_tick = good.arm_tick = good.arm_tick if arm else m.arm_tick
     m.wrench_tick = good.wrench_tick = good.wrench_tick if wrench else m.wrench_tick
     m.uav_tick = good.uav_tick = good.uav_tick if uav else m.uav_tick

@@ -8,7 +8,7 @@
 """
 
 import numpy as np
-from numba import float64, njit
+from numba import float64, njit, types
 
 from armland.estimation.plate.late_fusion import RING as FILTER_RING
 from armland.estimation.plate.layouts import kept_layout, plate_layout, told_layout
@@ -75,36 +75,42 @@ def take_attitude(m: Record, e: Record) -> None:
 
 @linked(
     lambda _: (
-        *(*heads("measurement"), float64, VECTOR, VECTOR, VECTOR),
-        *(record(told_layout()), record(kept_layout()), record(plate_layout())),
+        *(*heads("measurement"), float64, VECTOR, types.UniTuple(float64, 3), VECTOR, VECTOR),
+        *(record(told_layout()), record(kept_layout())),
     )
 )
 @njit(cache=True)
 def follow(
     m: Record,
     lift: float,
-    pull: Array,
+    push: Array,
+    gravity: tuple[float, float, float],
     eye: Array,
     view: Array,
     p: Record,
     s: Record,
-    plate: Record,
 ) -> None:
-    """One tick of the pose filter: reckon, fuse an image that has arrived, and fill `plate`.
+    """One tick of the pose filter: reckon, and fuse an image that has arrived.
 
     Args:
         m: measurement, `linking.head`.
         lift: force along the body's z, N; this and what follows as for `reckoning.advance`.
-        pull: (3,), m/s², D.
+        push: (3,), m/s², D.
+        gravity: γ (3,), m/s², D.
         eye: (3,), m, D.
         view: quaternion (4,), D<-camera.
         p: of `layouts.told_layout`.
         s: of `layouts.kept_layout`, updated.
-        plate: of `layouts.plate_layout`, written.
     """
-    advance(m, lift, pull, eye, view, p, s)
+    advance(m, lift, push, gravity, eye, view, p, s)
     if m.camera_fresh:
         fuse(m, p, s)
+
+
+@linked(lambda _: (record(told_layout()), record(kept_layout()), record(plate_layout())))
+@njit(cache=True)
+def know(p: Record, s: Record, plate: Record) -> None:
+    """Fill `plate`, of `layouts.plate_layout`, with what the pose filter knows of it now; `p` and `s` as for `follow`."""
     predict(0.0, p, s, plate)
 
 
@@ -121,10 +127,9 @@ def estimate_plate(lift: float, push: Array, b: Record) -> None:
     eye = turned(b.arm.rotation, p.camera)
     for i in range(3):
         eye[i] += b.arm.position[i]
-    gravity, pull = apparent_gravity(b.environment, e.plate, e.plate_v), np.empty(3)
-    for i in range(3):
-        pull[i] = push[i] + gravity[i]
-    follow(head(m), lift, pull, eye, quaternion_of(b.arm.rotation), p.filter, s.filter, s.plate)
+    gravity = apparent_gravity(b.environment, e.plate, e.plate_v)
+    follow(head(m), lift, push, gravity, eye, quaternion_of(b.arm.rotation), p.filter, s.filter)
+    know(p.filter, s.filter, s.plate)
     for i in range(3):
         e.plate[i], e.plate_v[i], e.plate_a[i] = s.plate.position[i], s.plate.velocity[i], s.plate.acceleration[i]
         e.omega[i] = s.plate.omega[i]

@@ -12,17 +12,22 @@ from armland.control.laws.settings import Row
 from armland.control.laws.settings import told as law_told
 from armland.estimation import contact, disturbance, wrench
 from armland.estimation.plate import layouts
+from armland.estimation.plate.layouts import FELT_S
 from armland.mission.belief import Flyer
 from armland.mission.board import board_layout
 from armland.mission.feasibility.launch import Launch
 from armland.mission.feasibility.room import room
 from armland.mission.feasibility.weight import hover_max
 from armland.mission.reference import view
+from armland.mission.reference.guided import SEEN_S
+from armland.mission.supervisor.faults import PLUNGES_MPS
 from armland.mission.table.mission import Start
+from armland.mission.uav import LEANT_MPS2, RECKONED_S
 from armland.models.airframe.lift import lift_range
 from armland.models.airframe.slope import tell_slope
 from armland.models.arm import ArmModel
 from armland.models.parameters import rotor_count
+from armland.models.weather import GUST, STRONGEST, expected
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -43,6 +48,9 @@ of its reach, against 0.6 m/s of the wrist alone and 0.3 m/s of the arm without 
 
 COMING_MPS2 = 3.0
 """Largest acceleration of the UAV that is carried on over the uplink's delay: what its largest tilt makes."""
+
+FELT = 2.0
+"""Of the strongest gust's acceleration: what the UAV's accelerometers may feel beyond the model. The arm pulls as hard."""
 
 BALANCE_AGE_S = 0.05
 """Oldest attitude that can be balanced by."""
@@ -129,7 +137,9 @@ def _estimate(p: Records, t: Telling) -> None:
     p["tool_follows"] = 0.0 if hinged else 1.0
     p["onboard_kp"], p["onboard_kd"] = s.onboard.kp_nm, s.onboard.kd_nms
     tell_slope(p, s, t.flyer.body.mass * t.flyer.gravity, rotor_count(s))
-    p["filter"] = layouts.told(s, t.flyer.mass, t.flyer.body.lever)
+    p["windy"] = expected(s).mean > 0.0
+    gust = FELT * s.uav.drag_nspm / t.flyer.mass * expected(s).gust(STRONGEST)
+    p["filter"] = layouts.told(s, t.flyer.mass, t.flyer.body.lever, gust)
     p["wrench"], p["contact"] = wrench.told(s), contact.told(s)
     bandwidth, most = s.estimation.load_observer_rad_s, s.estimation.load_observer_limit_n
     if hinged:
@@ -153,6 +163,7 @@ def _decide(p: Records, t: Telling) -> None:
     watch["hinge_max"], watch["tilt_max"] = limits.hinge_force_share * s.magnet.rating_n, np.deg2rad(limits.tilt_deg)
     _, static = lift_range(s)
     # One that flies on with all its thrust need not hover.
+    watch["plunges"] = PLUNGES_MPS + expected(s).sinking
     watch["thrust_max"] = s.control.thrust.ceiling * static
     watch["hover_max"] = np.inf if s.place.fly_on else hover_max(s)
     watch["joint_margin"], watch["sigma_min"] = limits.joint_margin_rad, limits.sigma_min
@@ -199,9 +210,12 @@ def _uav(p: Records, t: Telling) -> None:
     p["period"], p["hover_s"] = s.run.rate_hz // station.rate_hz, station.hover_s
     p["k_position"], p["k_velocity"], p["k_integral"] = station.k_position, station.k_velocity, station.k_integral
     p["speed_max"], p["integral_max"] = station.speed_max_mps, station.integral_max_mps2
-    p["coming_max"] = COMING_MPS2
+    wind, drag = expected(s), s.uav.drag_nspm / t.flyer.mass
+    p["reckoned"], p["fades"] = (FELT_S, FELT_S) if wind.mean > 0.0 else (RECKONED_S, SEEN_S)
+    p["leant"] = max(LEANT_MPS2, drag * wind.gust(STRONGEST))
+    p["coming_max"], p["vertical"] = COMING_MPS2, station.vertical
     p["tilt_max"], p["gust_share"], p["gust_max"] = station.tilt_max_rad, station.gust_share, station.gust_max_mps2
-    p["sight"] = view.told(s, t.flyer.body.lever)
+    p["sight"] = view.told(s, t.flyer.body.lever, wind.lean(drag / t.flyer.gravity, GUST))
 
 
 def _law(p: Records, t: Telling) -> None:

@@ -40,10 +40,11 @@ HELD, CAUGHT = LINK.index("held"), LINK.index("caught")
 
 RECKONED_S = 0.5
 """How long the station is kept by reckoning alone: a UAV that has left the camera's view comes back into it, and the error of its
-velocity stays below 0.3 m/s in a gust that ends meanwhile. Then it hovers by itself."""
+velocity stays below 0.3 m/s in a gust that ends meanwhile. Then it hovers by itself. Where wind is expected its accelerometers say
+when a gust ends, and it is reckoned for as long as the pose filter does."""
 
 LEANT_MPS2 = 2.0
-"""Largest horizontal acceleration that a UAV on the hinge holds against by leaning: 11 degrees."""
+"""Largest horizontal acceleration that a UAV on the hinge holds against by leaning: 11 degrees; more where more wind is expected."""
 
 
 @lru_cache
@@ -73,9 +74,13 @@ def told_layout() -> np.dtype:
             ("k_position", "f8"),  # 1/s
             ("k_velocity", "f8"),  # 1/s
             ("k_integral", "f8"),  # 1/s²
+            ("vertical", "f8"),  # of the two upwards over sideways
             ("speed_max", "f8"),  # m/s
             ("integral_max", "f8"),  # m/s²
             ("tilt_max", "f8"),  # rad
+            ("reckoned", "f8"),  # s, for which the station is kept by reckoning alone
+            ("fades", "f8"),  # s, age of the newest image from which on the gust that it showed is forgotten
+            ("leant", "f8"),  # m/s², largest horizontal acceleration that a UAV on the hinge holds against by leaning
             ("gust_share", "f8"),  # of the disturbance in the plate filter
             ("gust_max", "f8"),  # m/s²
             ("coming_max", "f8"),  # m/s², of the acceleration that is carried on over the uplink's delay
@@ -97,7 +102,7 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     p, s, what = b.told.act.uav, b.kept.act, row.uav
     c.uav_mode = MODES[row.link]
     learn_trim(b)
-    unseen = b.kept.estimate.seen == 0 or e.plate_age > RECKONED_S
+    unseen = b.kept.estimate.seen == 0 or e.plate_age > p.reckoned
     blind = unseen and (what == STATION or (what == CRUISE and not p.fly_on))
     if what == AUTONOMOUS or blind:
         c.uav_mode = MODE_AUTONOMOUS
@@ -110,7 +115,7 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
         if s.alone > 0:
             take_over(b.kept.estimate.plate.bias, p, s)
         if tick % p.period == 0:
-            keep(in_view(e, p), p.lever, np.zeros(3), b)
+            keep(in_view(e, row.seeks == 1, p, s), p.lever, np.zeros(3), b)
     elif what == CRUISE:
         if tick % p.period == 0 or s.cruising == 0:
             cruise(tick, b)
@@ -168,7 +173,7 @@ def _free_of_force(e: Record, p: Record, s: Record) -> None:
     # What carries the weight and leans against the wind now is where the station keeping takes over.
     for i in range(2):
         s.integral[i] += p.balance_rate * e.hinge_force[i] / p.mass * p.tick_s
-        s.integral[i] = min(max(s.integral[i], -LEANT_MPS2), LEANT_MPS2)
+        s.integral[i] = min(max(s.integral[i], -p.leant), p.leant)
         s.hovered[i] = s.integral[i]
     s.integral[2] = s.thrust / p.mass - p.gravity
     lean = np.array([s.integral[0], s.integral[1], p.gravity])

@@ -85,7 +85,7 @@ def sense(k: int, world: Record, views: Views, noise: Noise, measurement: Record
     true.record(k, data, told.truth, kept.rotors, told.rotors.mixer, truth)
     encoders.sample(k, data, told.encoders, what_fails, noise.encoders[row], measurement)
     wrench.sample(k, data, told.wrench, kept.wrench, what_fails, noise.wrench[row], measurement)
-    imu.sample(k, told.imu, kept.imu, noise.imu[row], truth)
+    imu.sample(k, told.imu, kept.imu, noise.imu[row], noise.force[row], truth)
     link.report(k, world, noise.link[row])
     link.receive(k, told.link, kept.link, what_fails, noise.link[row], measurement)
     if told.camera.fitted:

@@ -27,6 +27,8 @@ class Draw(NamedTuple):
     """(4,), see `devices.imu`."""
     thrust_factor: float
     """Thrust given over thrust asked for."""
+    force_bias: Array
+    """(3,) m/s², B, of the UAV's accelerometers."""
 
 
 def draw(scenario: Scenario, start: Start) -> Draw:
@@ -47,4 +49,5 @@ def draw(scenario: Scenario, start: Start) -> Draw:
         wrench_bias=np.concatenate([bad.force_bias_n * u[10:13], bad.torque_bias_nm * u[13:16]]),
         imu_bias=multiply(from_rotation_vector(heading), from_rotation_vector(tilt)),
         thrust_factor=float(1.0 + bad.thrust_error * u[16]),
+        force_bias=bad.acceleration_bias_mps2 * u[17:20],
     )

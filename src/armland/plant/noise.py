@@ -43,6 +43,8 @@ class Noise(NamedTuple):
     """(BLOCK, 5): along the mean wind 1, across it 2, upwards 2."""
     reference: Array
     """(BLOCK, 12): attitude, rates, velocity, acceleration of the deck."""
+    force: Array
+    """(BLOCK, 3): specific force that the UAV reads."""
     wind: Array
     """(BLOCK, 3) m/s, W: what `wind.timed` knows of these ticks."""
     deck: Array
@@ -63,7 +65,7 @@ class NoiseSource:
     """
 
     def __init__(self, seed: int, joints: int) -> None:
-        widths = (2 * joints, 6, 6, 3, CAMERA_WIDTH, 4, 3, joints, 3, 1, 5, 12, 3, 18)
+        widths = (2 * joints, 6, 6, 3, CAMERA_WIDTH, 4, 3, joints, 3, 1, 5, 12, 3, 3, 18)
         self._seed = seed
         self.rows = Noise(*(np.zeros((BLOCK, width)) for width in widths))
         self.generators: tuple[np.random.Generator, ...] = ()

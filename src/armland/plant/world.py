@@ -83,7 +83,7 @@ def build_world(scenario: Scenario, scene: Scene, start: Start, drawn: Draw, pha
     truth.tell(t["truth"], scene)
     encoders.tell(t["encoders"], scenario, scene, noisy)
     wrench.tell(t["wrench"], scenario, scene, drawn.wrench_bias, noisy)
-    imu.tell(t["imu"], scenario, drawn.imu_bias, noisy)
+    imu.tell(t["imu"], scenario, drawn, noisy)
     link.tell(t["link"], scenario)
     rotors.tell(t["rotors"], scenario, scene, drawn.thrust_factor)
     onboard.tell(t["onboard"], scenario, scene, rotor_effect(scenario))

@@ -13,6 +13,9 @@ class Station(Section):
     k_position: of.Gain = key(1.2, "1/s")
     k_velocity: of.Gain = key(3.0, "1/s")
     k_integral: of.Gain = key(1.2, "1/s²")
+    vertical: Annotated[float, between(1e-3, 100.0)] = key(
+        1.0, "ratio of k_velocity and k_integral upwards to those sideways: thrust answers sooner than attitude"
+    )
     speed_max_mps: of.PositiveSpeed = key(0.3, "largest speed asked for")
     integral_max_mps2: of.PositiveAcceleration = key(5.0, "largest acceleration that the integral asks for")
     tilt_max_rad: Annotated[float, between(1e-3, 1.5)] = key(0.3, "largest tilt asked for")

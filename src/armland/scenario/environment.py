@@ -69,6 +69,14 @@ class Gust(Section):
         )
 
 
+class Forecast(Section):
+    """What the user on site knows of the weather and tells the controller before a flight."""
+
+    wind_mps: Annotated[float, between(0.0, 40.0)] | None = key(
+        None, "mean wind at 20 ft that the controller is told, W20; air.wind_mps if absent, and never its direction"
+    )
+
+
 class Air(Section):
     """Wind, of which the controller is told nothing. Its heights are above ground or sea."""
 

@@ -23,6 +23,11 @@ class Sensors(Section):
     force_filter_hz: of.Hertz = key(100.0, "cut-off of the force-torque sensor's first-order low-pass")
     attitude_rad: of.Sigma = key(2e-3, "noise of the attitude that the UAV sends, each axis")
     rate_rad_s: of.Sigma = key(1e-2, "noise of its angular velocity, each axis")
+    acceleration_mps2: of.Sigma = key(
+        0.05,
+        "noise of its accelerometers, each axis, mean of a sample; BMA280: 120 µg/√Hz, 0.012 m/s² of it; the rest, the rotors' "
+        "vibration, is an assumption",
+    )
 
 
 class Camera(Section):
@@ -88,6 +93,9 @@ class Imperfections(Section):
     tilt_error_deg: SmallAngle = key(0.5, "roll and pitch that the UAV believes")
     thrust_error: Annotated[float, between(0.0, 0.9)] = key(
         0.05, "thrust given over thrust asked for, less one: a share of it"
+    )
+    acceleration_bias_mps2: Annotated[float, between(0.0, 100.0)] = key(
+        0.5, "of its accelerometers, each axis; BMA280: zero-g offset of 50 mg over its life"
     )
     hover_noise_m: of.Distance = key(0.01, "white noise of the position that the UAV believes in its own hover")
     camera: bool = key(True, "noise, delay and drop-outs of the camera; false: exact, at once")

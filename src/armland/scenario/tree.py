@@ -10,7 +10,7 @@ from armland.scenario import quantities as of
 from armland.scenario.arm import Arm, Tool
 from armland.scenario.control import Control, Experiment
 from armland.scenario.deviation import Deviation
-from armland.scenario.environment import Air, Disturbance, Environment, Sea
+from armland.scenario.environment import Air, Disturbance, Environment, Forecast, Sea
 from armland.scenario.estimation import Estimation
 from armland.scenario.faults import Fault
 from armland.scenario.gear import Cradle, Hinge, Magnet, Plate, Skids
@@ -84,6 +84,7 @@ class Scenario(Section):
     disturbance: Disturbance = Disturbance()
     air: Air = Air()
     sea: Sea = Sea()
+    forecast: Forecast = Forecast()
     control: Control = Control()
     estimation: Estimation = Estimation()
     place: Place = Place()
@@ -133,6 +134,11 @@ class Scenario(Section):
         return self._asked | self._changed
 
     @property
+    def foretold_mps(self) -> float:
+        """Mean wind at 20 ft, m/s, that the controller is told: the forecast's, or that of the air; never what it is like."""
+        return self.air.wind_mps if self.forecast.wind_mps is None else self.forecast.wind_mps
+
+    @property
     def sized(self) -> bool:
         """Whether the rules of `models.airframe.sizing` have been applied."""
         return self._sized
@@ -172,6 +178,7 @@ class Scenario(Section):
 
     def _belief(self) -> str:
         data = json.loads(self.model_dump_json(exclude={*PLANT_ONLY, "belief"}))
+        data["forecast"]["wind_mps"] = self.foretold_mps
         update(data, self.belief)
         return json.dumps(data)
 

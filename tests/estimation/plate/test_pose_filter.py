@@ -28,7 +28,8 @@ from armland.scenario import load_scenario
 
 H, MASS, GRAVITY = 1e-3, 0.480, 9.81
 MESSAGE = np.dtype(
-    [("tick", "i8"), ("uav_tick", "i8"), ("uav_quat", "f8", (4,)), ("uav_rate", "f8", (3,)), ("camera_capture", "i8")]
+    [("tick", "i8"), ("uav_tick", "i8"), ("uav_quat", "f8", (4,)), ("uav_rate", "f8", (3,)), ("uav_force", "f8", (3,))]
+    + [("camera_capture", "i8")]
     + [("camera_position", "f8", (3,)), ("camera_quat", "f8", (4,)), ("camera_sigma", "f8", (6,))]
 )
 """Of the measurement what the filter reads."""
@@ -37,7 +38,7 @@ PERIOD, LINK = 33, 5  # ticks between images, between attitudes
 MARKER, PLATE_OFFSET = np.array([0.04, -0.02, -0.03]), np.array([0.0, 0.0, -0.06])
 FACE = Rotation.from_quat([0.0, 1.0, 0.0, 0.0], scalar_first=True)
 GATE, RESTART_AFTER = 16.27, 4
-STILL = np.zeros(3)
+STILL, UNITY = np.zeros(3), np.ones(1)
 
 
 def settings(**changes):
@@ -50,11 +51,11 @@ def settings(**changes):
     return p
 
 
-def tick(k, taken, quat, rate, lift, eye, view, p, s, push=STILL):
-    """One tick of the filter, the UAV's newest attitude `quat` and `rate` having been taken at `taken`."""
+def tick(k, taken, quat, rate, lift, eye, view, p, s, push=STILL, force=STILL):
+    """One tick of the filter, the UAV's newest attitude `quat`, `rate` and specific `force` having been taken at `taken`."""
     m = np.zeros(1, MESSAGE)
-    m["tick"], m["uav_tick"], m["uav_quat"], m["uav_rate"] = k, taken, quat, rate
-    advance(m[0], lift, push + np.array(DOWN), eye, view, p[0], s[0])
+    m["tick"], m["uav_tick"], m["uav_quat"], m["uav_rate"], m["uav_force"] = k, taken, quat, rate, force
+    advance(m[0], lift, push, DOWN, eye, view, p[0], s[0])
 
 
 def quats(R):
@@ -124,9 +125,10 @@ def run(motion, p=None, tamper=lambda tick, sample: sample, horizon=0.0, lag=12,
         taken = max(k - lag, 0) // LINK * LINK
         stamp = k if kinds.get("stamp_imu") else taken
         report, rate = motion.report[taken], motion.rate[taken]
-        tick(
-            k, stamp, report, rate, motion.thrust[k], motion.eye[k], motion.view_quat[k], p, s, kinds.get("push", STILL)
-        )
+        force = kinds["force"][taken] if "force" in kinds else STILL
+        lift = motion.thrust[k] * kinds.get("gives", UNITY)[k % len(kinds.get("gives", UNITY))]
+        view = motion.eye[k], motion.view_quat[k]
+        tick(k, stamp, report, rate, lift, *view, p, s, kinds.get("push", STILL), force)
         if k % PERIOD == 0:
             sample = image(motion, k, kinds.get("sigma", SIGMA))
             arrivals[k + int(motion.rng.integers(50, 76))] = sample
@@ -481,7 +483,7 @@ def test_cost_of_a_tick_and_of_a_sample():
     def ticks(first, count, m, eye, view, p, s, plate):
         for k in range(first, first + count):
             m[0].tick, m[0].uav_tick = k, (k - 12) // 5 * 5
-            advance(m[0], 4.7, eye + np.array(DOWN), eye, view, p[0], s[0])
+            advance(m[0], 4.7, eye, (0.0, 0.0, -9.81), eye, view, p[0], s[0])
             predict(0.0, p[0], s[0], plate[0])
 
     @njit
@@ -538,7 +540,7 @@ def test_p1_is_thrust_along_the_tilted_body_and_apparent_gravity():
     m, gamma = np.zeros(1, MESSAGE), np.array([0.3, -0.2, -10.0])
     m["uav_quat"] = quats(Rotation.from_euler("y", 0.2))
     s["imu_tick"], s["track"]["begun"] = -1, 1
-    advance(m[0], 5.0, np.array(gamma), STILL, m["uav_quat"][0].copy(), p[0], s[0])
+    advance(m[0], 5.0, STILL, tuple(gamma), STILL, m["uav_quat"][0].copy(), p[0], s[0])
     lift = 5.0 / MASS * np.array([0.0, np.sin(0.2), np.cos(0.2)])
     np.testing.assert_allclose(s["track"]["acceleration"][0, 0], lift + gamma, atol=1e-12)
 
@@ -761,3 +763,46 @@ def test_filter_learns_of_a_camera_that_claims_too_little(times, low, high):
             ratios.append(s["noise"][0])
     assert low <= np.mean(ratios[120:]) <= high
     assert np.mean(np.array(answers[60:]) == FUSED) > 0.97
+
+
+def gusty(motion, bias=0.0):
+    """Share of the thrust that the ground reckons with and the air does not leave as it is, and what accelerometers then feel."""
+    t = np.arange(motion.ticks) * H
+    wrong = 1.0 + 0.12 * np.sin(2.0 * np.pi * 0.8 * t)
+    felt = np.zeros((motion.ticks, 3))
+    felt[:, 2] = motion.thrust / MASS
+    return wrong, felt + bias + 0.05 * np.random.default_rng(3).normal(size=felt.shape)
+
+
+def speed_error(motion, **kinds):
+    found = run(motion, settings(gust_max=kinds.pop("gust_max", 8.0)), **kinds)
+    return rms((found.plate["velocity"] - motion.velocity)[1500:])[2]
+
+
+def test_lift_that_gusts_change_is_known_where_the_uav_says_what_it_feels(motion):
+    """Negative controls: not asked, the accelerometers make no difference, and a UAV that sends none is flown without."""
+    wrong, felt = gusty(motion)
+    without = speed_error(motion, gives=wrong)
+    assert speed_error(motion, gives=wrong, force=felt) < 0.4 * without
+    assert speed_error(motion, gives=wrong, force=felt, gust_max=0.0) == pytest.approx(without, rel=1e-12)
+
+
+def test_bias_of_accelerometers_is_found_like_a_steady_disturbance(motion):
+    """50 mg of each axis make no more than a tenth of what the gusts would."""
+    wrong, felt = gusty(motion, bias=0.5)
+    assert speed_error(motion, gives=wrong, force=felt) < 0.45 * speed_error(motion, gives=wrong)
+
+
+def test_accelerometers_that_read_nonsense_are_believed_within_a_bound(motion):
+    _, felt = gusty(motion)
+    p = settings(gust_max=8.0)
+    found = run(motion, p, force=felt + [0.0, 0.0, 500.0])
+    assert np.abs(found.memory["gust"]).max() <= 8.0
+
+
+def test_what_is_felt_is_part_of_the_disturbance_that_is_cancelled(motion):
+    wrong, felt = gusty(motion)
+    found = run(motion, settings(gust_max=8.0), gives=wrong, force=felt)
+    missed = motion.thrust * (1.0 - wrong) / MASS
+    upwards = found.plate["bias"][1500:, 2]
+    assert np.corrcoef(upwards, missed[1500:])[0, 1] > 0.97

@@ -18,10 +18,11 @@ def below(bench):
     return bench
 
 
-def asked(bench, aside):
+def asked(bench, aside, waits=True):
     """Where a UAV is asked to be that is `aside` (2,), m, of the arm."""
     bench.e["plate"][0] = bench.e["r"][0] + [*aside, 0.4]
-    return in_view(bench.tick.buffer["estimate"][0], bench.told["act"]["uav"][0])
+    told, kept = bench.told["act"]["uav"][0], bench.kept["act"][0]
+    return in_view(bench.tick.buffer["estimate"][0], waits, told, kept)
 
 
 def seen(bench, aside, height, lean):
@@ -112,3 +113,40 @@ def test_step_is_measured_from_where_it_was_lost_and_not_from_where_reckoning_dr
     place = np.array(below.plan.scenario.place.catch_m)
     first = look_for(below, place + [0.2, 0.0, 0.0])
     np.testing.assert_array_equal(look_for(below, place + [1.0, 1.0, 0.0])[:2], first[:2])
+
+
+def kept_upwind(bench, towards, lean, height):
+    """Where (2,), m, beside the arm a UAV is asked to be that leans by `lean` rad towards `towards` (2,), `height` m above it."""
+    p = bench.told["act"]["uav"]
+    p["sight"]["leans"], bench.kept["act"]["hovered"] = 1, 9.81 * np.tan(lean) * np.array(towards)
+    bench.e["plate"][0] = bench.e["r"][0] + [0.0, 0.0, height]
+    told, kept = p[0], bench.kept["act"][0]
+    return in_view(bench.tick.buffer["estimate"][0], True, told, kept)[:2] - p["station"][0, :2]
+
+
+def reach(bench, place, towards, lean, height):
+    """How far (2,), m, the UAV may be blown from `place` (2,), downwind and upwind, before the plant's camera loses it."""
+    turn = lean * np.array([-towards[1], towards[0], 0.0])
+    steps = np.arange(0.0, 0.5, 0.002)
+    top = bench.e["r"][0, 2] + height
+    out = []
+    for sign in (-1.0, 1.0):
+        lost = [not seen(bench, np.asarray(place) + sign * x * np.array(towards), top, turn) for x in steps]
+        out.append(steps[lost.index(True)])
+    return np.array(out)
+
+
+@pytest.mark.parametrize("angle", np.arange(0.0, 2.0 * np.pi, np.pi / 3.0))
+def test_leaning_uav_is_kept_where_a_gust_of_either_way_takes_it_out_of_view_equally_late(below, angle):
+    """Negative control: right above the camera a UAV that leans by 20 degrees is lost downwind after a third of that."""
+    towards, lean, height = (np.cos(angle), np.sin(angle)), np.deg2rad(20.0), 0.9
+    place = kept_upwind(below, towards, lean, height)
+    assert place @ towards > 0.05
+    there, above = reach(below, place, towards, lean, height), reach(below, [0.0, 0.0], towards, lean, height)
+    assert there.min() > 2.0 * above.min()
+    assert there.min() > 0.6 * there.max()
+
+
+def test_uav_that_hardly_leans_or_is_where_it_is_caught_is_kept_above_the_camera(below):
+    np.testing.assert_array_equal(kept_upwind(below, (1.0, 0.0), np.deg2rad(5.0), 0.9), 0.0)
+    np.testing.assert_array_equal(kept_upwind(below, (1.0, 0.0), np.deg2rad(20.0), 0.05), 0.0)

@@ -35,6 +35,31 @@ def test_gyro_bias_shows_in_the_rates_alone(bench):
     assert (TURN * attitude.inv()).magnitude() < 1e-12
 
 
+def falling(b, k, velocity, noise=0.0):
+    """Specific force that is read at tick `k` of a UAV that moves at `velocity` (3,), m/s, W."""
+    b.put("quat", TURN.as_quat(scalar_first=True))
+    b.put("velocity", velocity)
+    return b.read(k, noise)["uav_force"][0].copy()
+
+
+def test_specific_force_is_the_mean_acceleration_less_gravity_along_the_bodys_axes(bench):
+    """At rest it is gravity's opposite; in free fall nothing."""
+    b = bench()
+    period = b.told["imu"]["period"][0]
+    np.testing.assert_allclose(falling(b, 0, [0.0, 0.0, 0.0]), TURN.inv().apply([0.0, 0.0, 9.81]), atol=1e-9)
+    np.testing.assert_allclose(falling(b, period, [0.0, 0.0, -9.81e-3 * period]), 0.0, atol=1e-9)
+    push = np.array([1.0, -2.0, 0.5])
+    force = falling(b, 2 * period, np.array([0.0, 0.0, -9.81e-3 * period]) + push * 1e-3 * period)
+    np.testing.assert_allclose(force, TURN.inv().apply(push + [0.0, 0.0, 9.81]), atol=1e-9)
+
+
+def test_accelerometers_have_a_bias_and_noise(bench):
+    b = bench(sensors={"acceleration_mps2": 0.05})
+    b.told["imu"]["force_bias"] = [0.1, 0.2, 0.3]
+    still = TURN.inv().apply([0.0, 0.0, 9.81])
+    np.testing.assert_allclose(falling(b, 0, [0.0] * 3, noise=1.0) - still, [0.15, 0.25, 0.35], atol=1e-9)
+
+
 def test_drawn_heading_error_is_what_the_uav_reports(waiting):
     led = waiting(imperfections={"heading_error_deg": 10.0})
     ticks = led.step(400)

@@ -54,6 +54,8 @@ class StationGains(NamedTuple):
     """Smallest F_z, N: what the rotors need so that the attitude stays under control."""
     thrust_max: float = 7.0
     """N, below the rotors' 7.44 N: the rest is for the attitude."""
+    vertical: float = 1.0
+    """k_v and k_i upwards over those sideways: thrust answers sooner than attitude."""
 
 
 class StationReference(NamedTuple):
@@ -99,7 +101,8 @@ def keep_station(
     catching_up = _limited(reference.position - position, gains.k_position, gains.speed_max)
     for i in range(3):
         velocity_error[i] = reference.velocity[i] + catching_up[i] - velocity[i]
-        wanted = reference.acceleration[i] + gains.k_velocity * velocity_error[i] + integral[i] - disturbance[i]
+        k_v = gains.k_velocity * (gains.vertical if i == 2 else 1.0)
+        wanted = reference.acceleration[i] + k_v * velocity_error[i] + integral[i] - disturbance[i]
         force[i] = gains.mass * (wanted - gravity[i])  # (K.1)
     held = _within_limits(force, gains)
     thrust = held[2] / max(1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2]), np.cos(gains.tilt_max))
@@ -140,7 +143,8 @@ def _within_limits(force: Array, gains: StationGains) -> Array:
 def _integrated(integral: Array, velocity_error: Array, force: Array, held: Array, gains: StationGains) -> Array:
     step, new = np.empty(3), np.empty(3)
     for i in range(3):
-        step[i] = gains.k_integral * gains.period * velocity_error[i]
+        k_i = gains.k_integral * (gains.vertical if i == 2 else 1.0)
+        step[i] = k_i * gains.period * velocity_error[i]
     outwards = force[0] * step[0] + force[1] * step[1] > 0.0
     if outwards and (force[0] != held[0] or force[1] != held[1]):
         step[0] = step[1] = 0.0

@@ -10,6 +10,11 @@ from armland.records import Records
 from armland.rotations import Array
 from armland.scenario import Scenario
 
+FORGOTTEN_S, FELT_S = 0.5, 2.0
+"""Time without a sample after which the filter begins anew: the gust that it knew may be over, and the UAV, told to hover by its own
+means by then, is nearly at rest. Likewise where the UAV says what it feels: a gust that ends is known, and what is left of its
+accelerometers' bias, 0.05 m/s², makes 0.1 m."""
+
 FACE_DOWN = (0.0, 1.0, 0.0, 0.0)
 """body<-marker: the printed face looks down."""
 
@@ -24,6 +29,8 @@ def told_layout() -> np.dtype:
             ("marker_offset", "f8", (3,)),
             ("marker_quat", "f8", (4,)),
             ("plate_offset", "f8", (3,)),
+            ("gust_max", "f8"),  # m/s², most that is felt beyond the model; 0: accelerometers are not asked
+            ("forgotten", "f8"),  # s without a sample after which it begins anew
             ("white", "f8"),
             ("blind", "f8"),
             ("walk", "f8"),
@@ -62,6 +69,8 @@ def kept_layout() -> np.dtype:
             ("innovation", "f8", (3,)),  # m, D, of the last sample
             ("turn", "f8", (3,)),  # rad, D, of the last sample's attitude
             ("compared", "i8"),  # 1 where there is one
+            ("gust", "f8", (3,)),  # m/s², body, what the UAV felt beyond the model at its newest sample
+            ("felt", "f8", (3,)),  # m/s², D, that at the present tick
             ("imu_tick", "i8"),
             ("rate", "f8", (3,)),  # rad/s, body
             ("align", ALIGNMENT),
@@ -87,7 +96,7 @@ def plate_layout() -> np.dtype:
             ("position", "f8", (3,)),  # m, D
             ("velocity", "f8", (3,)),  # m/s, D
             ("acceleration", "f8", (3,)),  # m/s², D, of the centre of mass
-            ("bias", "f8", (3,)),  # m/s², D, the part of it that no model explains: wind, thrust error
+            ("bias", "f8", (3,)),  # m/s², D, the part of it that no model explains, felt or found: wind, thrust error
             ("quat", "f8", (4,)),  # D<-body
             ("omega", "f8", (3,)),  # rad/s, body
             ("sigma_position", "f8", (3,)),  # m, D axes
@@ -98,17 +107,19 @@ def plate_layout() -> np.dtype:
     )
 
 
-def told(scenario: Scenario, mass: float, lever: Array) -> Records:
+def told(scenario: Scenario, mass: float, lever: Array, gust: float = 0.0) -> Records:
     """The record (1,) of `told_layout`.
 
     Args:
         scenario: as the controller believes it.
         mass: of all that flies, kg.
         lever: centre of mass to the hinge's pivot (3,), m, body.
+        gust: m/s², largest that its accelerometers are believed; 0: they are not asked.
     """
     f, tick_s = scenario.estimation.plate, 1.0 / scenario.run.rate_hz
     p: Records = np.zeros(1, told_layout())
-    p["tick_s"], p["mass"] = tick_s, mass
+    p["tick_s"], p["mass"], p["gust_max"] = tick_s, mass, gust
+    p["forgotten"] = FELT_S if gust > 0.0 else FORGOTTEN_S
     p["marker_offset"], p["marker_quat"], p["plate_offset"] = scenario.camera.marker_m, FACE_DOWN, lever
     p["sigma_attitude"], p["sigma_rate"] = scenario.sensors.attitude_rad, scenario.sensors.rate_rad_s
     for name in ("white", "blind", "walk", "align_walk", "gate", "restart_after"):

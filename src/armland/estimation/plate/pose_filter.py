@@ -27,10 +27,6 @@ LEAP_M, LEAP_S = 0.06, 0.3
 """A marker that is found so far from where it is expected, so soon after it was seen, is another one, or nothing that flies: in that
 time a UAV at its largest tilt comes 0.13 m, and the filter knows most of it."""
 
-FORGOTTEN_S = 0.5
-"""Time without a sample after which the filter begins anew: the gust that it knew may be over, and the UAV, told to hover by its own
-means by then, is nearly at rest."""
-
 SCATTER_TIMES = 3
 """By how many times later the filter begins anew where images scatter."""
 
@@ -60,7 +56,7 @@ def fuse(m: Record, p: Record, s: Record) -> int:
     if _repeats(m, s):
         return REPEATED
     capture, first = m.camera_capture, s.track.marks == 0
-    if first or (capture - s.sample_tick) * p.tick_s > FORGOTTEN_S:
+    if first or (capture - s.sample_tick) * p.tick_s > p.forgotten:
         _start(m, first, np.zeros(9), p, s)
         s.fused = 0
         return STARTED if first else RESTARTED
@@ -211,7 +207,7 @@ def predict(horizon_s: float, p: Record, s: Record, o: Record) -> None:
     lever, swing = _turned(R, p.plate_offset), _turned(R, cross(s.rate, p.plate_offset))
     for i in range(3):
         a = s.track.acceleration[now % RING, i] + x[6 + i]
-        o.acceleration[i], o.bias[i] = a, x[6 + i]
+        o.acceleration[i], o.bias[i] = a, x[6 + i] + s.felt[i]
         o.position[i] = x[i] + (x[3 + i] + 0.5 * a * horizon_s) * horizon_s + lever[i]
         o.velocity[i] = x[3 + i] + a * horizon_s + swing[i]  # (P.3)
     _deviations(P, R, lever, horizon_s, p, s, o)

@@ -25,6 +25,7 @@ GEAR = (
         "air",
         "sea",
         "motion_reference",
+        "forecast",
         "bounds",
         "estimation",
         "limits",

@@ -6,6 +6,7 @@ from armland.mission.missions.keys import GEAR, ON_MAGNET, SHARED
 from armland.mission.supervisor.ends import FINALS
 from armland.mission.table.mission import At, Criterion, Mission
 from armland.mission.table.phases import Phase
+from armland.scenario import Scenario
 
 READY = "magnet_ready > half, bias_known > half, uav_seen > half, progress > almost_one"
 """What a self-test waits for."""
@@ -82,6 +83,20 @@ PHASES = (
     *FINALS,
 )
 
+FIND = Phase(
+    "find", kind="ground", arm="hold", uav="autonomous", free=True, seeks=True, timeout_s=20.0, on_timeout="refused"
+).to("self_test", "uav_seen > half, elapsed > settled_s")
+"""The UAV hovers by itself until the camera sees it."""
+
+
+def _phases(scenario: Scenario) -> tuple[Phase, ...]:
+    # In wind a UAV that hovers by itself does not stay in view for as long as a self-test: it is guided from the first sight on.
+    if not scenario.forecast.wind_mps:
+        return PHASES
+    first, *rest = PHASES
+    return (FIND, first._replace(uav="station", seeks=True, timeout_s=20.0), *rest)
+
+
 TARGETS = {
     "miss": At("catch_m", -1.0, "wait_below_m"),
     "carry": At("put_down_m", 1.0, "above_m"),
@@ -103,7 +118,7 @@ LANDING = Mission(
     name="landing",
     summary="catch a flying UAV and put it down on the cradle",
     start="air",
-    phases=lambda _: PHASES,
+    phases=_phases,
     uses=(*SHARED, *GEAR, *ON_MAGNET),
     points=lambda _: (
         At("catch_m", -1.0, "wait_below_m"),
@@ -116,6 +131,7 @@ LANDING = Mission(
     targets=TARGETS,
     moves=MOVES,
     timeouts={
+        "find": "the camera does not see the UAV: check marker and camera, and whether it hovers above the arm",
         "self_test": "not all was ready: check magnet, force sensor and camera",
         "guide": "the UAV did not come to its station: check that it obeys and has room",
         "miss": "the capture was missed too often: check wind, marker, magnet and force sensor",
@@ -139,5 +155,5 @@ LANDING = Mission(
 tests the grip, then the thrust ramps down while the arm takes the weight over. The arm carries the UAV above the cradle and sets
 it down; the rotors stop when the rails carry, the magnet opens when the hinge is free of force, and the arm draws back.
 A capture that is missed is tried again `bounds.retries` times. A UAV that leaves the camera's view before is looked
-for as long as `limits.search_ms`.""",
+for as long as `limits.search_ms`. Where wind is foretold the ground guides the UAV from the first sight on, through the self-test.""",
 )

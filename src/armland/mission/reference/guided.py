@@ -117,6 +117,8 @@ def take_over(bias: Array, p: Record, s: Record) -> None:
     if s.trimmed > 0:
         for i in range(3):
             s.integral[i] = min(max(s.trim[i] + _gust(bias, i, p), -p.integral_max), p.integral_max)
+        if p.sight.leans:
+            s.hovered[0], s.hovered[1] = s.trim[0], s.trim[1]
 
 
 @njit(cache=True)
@@ -176,7 +178,7 @@ def keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
         b: board; thrust, set-point, integral and hover thrust that acting keeps are written.
     """
     e, p, s = b.tick.estimate, b.told.act.uav, b.kept.act
-    R, fade = matrix(e.quat), np.exp(-max(e.plate_age - SEEN_S, 0.0) / FADE_S)
+    R, fade = matrix(e.quat), np.exp(-max(e.plate_age - p.fades, 0.0) / FADE_S)
     arm, swing = turned(R, p.lever), turned(R, cross(e.omega, p.lever))
     wanted, position, velocity, wind, held = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for i in range(3):
@@ -197,7 +199,7 @@ def keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
         velocity[i] += coming * ahead
     period = p.period * p.tick_s
     rates = (p.k_position, p.k_velocity, p.k_integral, p.speed_max, p.integral_max, p.tilt_max)
-    gains = StationGains(p.mass, period, *rates, p.thrust_min, p.thrust_max)
+    gains = StationGains(p.mass, period, *rates, p.thrust_min, p.thrust_max, p.vertical)
     gravity = apparent_gravity(b.environment, position, velocity)
     reference = StationReference(wanted, moving, np.zeros(3), p.heading)
     thrust, q_d, integral = keep_station(position, velocity, e.quat, reference, wind, gains, held, gravity)

@@ -101,6 +101,10 @@ def watch_layout() -> np.dtype:
             ("hinge_max", "f8"),  # N
             ("tilt_max", "f8"),  # rad
             ("thrust_max", "f8"),  # N, largest thrust that is commanded
+            (
+                "plunges",
+                "f8",
+            ),  # m/s, speed of sinking with more thrust than should carry it, of a UAV whose rotors give too little
             ("hover_max", "f8"),  # N, command beyond which a UAV cannot hover safely
             ("joint_margin", "f8"),  # rad
             ("sigma_min", "f8"),
@@ -237,8 +241,8 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     # A loss that its rotors can make up for is learnt: the ground catches it sooner than the UAV's own hover.
     sinks = kept.act.thrust >= 0.99 * p.thrust_max and e.plate_v[2] < -SINKS_MPS
     known_speed = e.plate_valid == 1 and known.filter.scattered == 0
-    sinks = row.uav == STATION and known_speed and (sinks or (strains and e.plate_v[2] < -PLUNGES_MPS))
-    sinks = sinks or (row.uav == AUTONOMOUS and known_speed and e.plate_v[2] < -PLUNGES_MPS)
+    sinks = row.uav == STATION and known_speed and (sinks or (strains and e.plate_v[2] < -p.plunges))
+    sinks = sinks or (row.uav == AUTONOMOUS and known_speed and e.plate_v[2] < -p.plunges)
     # What is still being learnt says nothing: a sensor that drifts is never done.
     felt_short = row.uav == RAMP and row.link == CAUGHT and abs(kept.act.short) < b.told.act.uav.shortfall
     weighed = (row.uav == AUTONOMOUS and kept.act.trimmed > 0) or felt_short or row.uav == BALANCE

@@ -15,6 +15,8 @@ import numpy as np
 
 from armland.models.airframe.file import foreign_of
 from armland.models.airframe.size import Size, size_of
+from armland.models.parameters import plate_mass, uav_parameters
+from armland.models.weather import started
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 
@@ -166,7 +168,15 @@ def sized(scenario: Scenario) -> Scenario:
     for group in (("rotors.radius_m", "magnet.rating_n"), tuple(rule.key for rule in RULES)):
         done = {rule.key for rule in RULES} - set(group) if len(group) == 2 else {"rotors.radius_m", "magnet.rating_n"}
         scenario = scenario.resolved(_changes(scenario, [r for r in RULES if r.key not in done]))
-    return scenario
+    return scenario.resolved(_in_wind(scenario)) if scenario.foretold_mps > 0.0 else scenario
+
+
+def _in_wind(scenario: Scenario) -> dict[str, Any]:
+    out, mass = dict[str, Any](), uav_parameters(scenario).mass + plate_mass(scenario)
+    for key, value in started(scenario, mass).items():
+        if not is_settled(scenario, key):
+            update(out, nested(key, value))
+    return out
 
 
 def said(scenario: Scenario) -> dict[str, float]:

@@ -47,6 +47,7 @@ SAMPLE = np.dtype(
     [
         ("quat", "f8", (4,)),
         ("rate", "f8", (3,)),
+        ("force", "f8", (3,)),
         ("heard", "i8"),
         ("echo", "i8"),
         ("rotors", "f8", (MOST_ROTORS,)),
@@ -54,8 +55,8 @@ SAMPLE = np.dtype(
         ("sent", "i8"),
     ]
 )
-"""Downwards: attitude, rates in rad/s, tick at which the UAV had heard its newest command and at which that was sent, thrusts asked of
-the rotors in N, whether one is weak, and tick of the sample."""
+"""Downwards: attitude, rates in rad/s, specific force in m/s², tick at which the UAV had heard its newest command and at which that was
+sent, thrusts asked of the rotors in N, whether one is weak, and tick of the sample."""
 
 
 def told_layout(joints: int) -> np.dtype:
@@ -134,6 +135,7 @@ def report(k: int, world: Record, noise: Array) -> None:
     row.sent = -1 if kept.lost_down or world.kept.faults.unpowered else k
     row.quat = world.kept.imu.quat
     row.rate = world.kept.imu.rate
+    row.force = world.kept.imu.force
     row.rotors = world.kept.rotors.asked
     row.weak = 1 if world.kept.onboard.weak >= WEAK_SAMPLES or world.kept.onboard.cut else 0
     row.heard, row.echo = kept.heard, kept.arrived.sent
@@ -164,6 +166,7 @@ def receive(k: int, told: Record, kept: Record, faults: Record, noise: Array, m:
     m.uav_tick, m.uav_heard, m.uav_echo = taken + told.stamp, row.heard, row.echo
     m.uav_quat = row.quat
     m.uav_rate = row.rate
+    m.uav_force = row.force
     m.uav_rotors = row.rotors
     m.uav_weak = row.weak
 

@@ -227,6 +227,7 @@ def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float, t
         p.tilt_max,
         p.lift_min,
         p.thrust_max,
+        1.0,
     )
     if told and not kept.faults.deaf:
         turned += kept.link.arrived.step

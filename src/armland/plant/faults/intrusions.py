@@ -41,6 +41,7 @@ def _lose(device: int, m: Record) -> None:
     elif device == ATTITUDE:
         _fill(m.uav_quat)
         _fill(m.uav_rate)
+        _fill(m.uav_force)
     else:
         _fill(m.camera_position)
 

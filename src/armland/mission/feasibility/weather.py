@@ -1,0 +1,77 @@
+"""Which limits of calm air give way where the user foretells wind, see `models.weather`: keys that he has not set, and criteria."""
+
+from typing import Any
+
+import numpy as np
+
+from armland.mission.table.mission import Criterion, Mission
+from armland.models.airframe.sizing import at, is_settled, nested
+from armland.models.weather import GUST, MOST_RAD, SPARE_RAD, STRONGEST, expected
+from armland.scenario import Scenario
+from armland.scenario.tables import update
+
+STIFF = 1.5, 4.0, 2.0, 2.0
+"""Gains of a station that is kept against gusts, 1/s, 1/s, 1/s², and those upwards over those sideways."""
+
+SPARE_DEG = 5.0
+"""Between the lean at which the arm closes and the one at which the UAV counts as out of control."""
+
+LIFT = 0.3
+"""Share of the weight by which the rotors' lift changes in a gust that sinks by 1 m/s, or blows along by three times that."""
+
+ROUGH_MPS, ROUGH_DEG = 0.25, 5.0
+"""Largest speed and tilt at the touchdown of a landing in wind."""
+
+
+def weathered(scenario: Scenario, mass: float) -> Scenario:
+    """The believed scenario with the limits that its wind needs; those that the user has set stay, and so does what is wide enough.
+
+    Args:
+        scenario: believed.
+        mass: kg, of all that flies.
+    """
+    wind, g = expected(scenario), float(np.linalg.norm(scenario.environment.gravity_mps2))
+    if wind.mean <= 0.0:
+        return scenario
+    rate = scenario.uav.drag_nspm / mass
+    strongest = wind.lean(rate / g, STRONGEST)
+    # N, of the lift of a UAV whose rotors carry it, in sinking air.
+    sinks = LIFT * mass * g * wind.sinking
+    wanted = {
+        "control.station.tilt_max_rad": min(strongest + 0.5 * SPARE_RAD, MOST_RAD),
+        "control.station.gust_max_mps2": rate * wind.gust(STRONGEST),
+        "bounds.align_tilt_deg": min(float(np.rad2deg(strongest)), scenario.limits.tilt_deg - SPARE_DEG),
+        "control.station.k_position": STIFF[0],
+        "control.station.k_velocity": STIFF[1],
+        "control.station.k_integral": STIFF[2],
+        "control.station.vertical": STIFF[3],
+        "bounds.force_balanced_n": scenario.bounds.force_balanced_n + scenario.uav.drag_nspm * wind.sigma * GUST,
+        "bounds.level_tilt_deg": 2.0 * scenario.bounds.level_tilt_deg,
+        "limits.unexplained_n": scenario.limits.unexplained_n + sinks,
+        "limits.shortfall_n": scenario.limits.shortfall_n + GUST * sinks,
+    }
+    changes: dict[str, Any] = {}
+    for key, value in wanted.items():
+        if value > at(scenario, key) and not is_settled(scenario, key):
+            update(changes, nested(key, value))
+    return scenario.replaced(changes) if changes else scenario
+
+
+def judged(mission: Mission, scenario: Scenario, weight: float) -> Mission:
+    """The mission with the criteria of its weather: a touchdown on gusts is harder, and a UAV that flies leans.
+
+    Args:
+        mission: of calm air.
+        scenario: believed.
+        weight: N, of all that flies.
+    """
+    wind = expected(scenario)
+    if wind.mean <= 0.0:
+        return mission
+    lean = float(np.rad2deg(wind.lean(scenario.uav.drag_nspm / weight, STRONGEST)))
+    more = {"touchdown_speed": (ROUGH_MPS, 0.0), "touchdown_tilt": (ROUGH_DEG, 0.0), "flying_tilt": (0.0, lean)}
+    return mission._replace(criteria=tuple(_in_wind(c, *more.get(c.name, (0.0, 0.0))) for c in mission.criteria))
+
+
+def _in_wind(c: Criterion, least: float, more: float) -> Criterion:
+    return c._replace(bound=max(c.bound + more, least))

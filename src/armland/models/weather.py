@@ -1,0 +1,84 @@
+"""What the wind that the user foretells asks of a mission: how far the UAV will lean, and which limits of calm air must give way.
+
+| symbol | name | unit |
+|---|---|---|
+| W₂₀ | `forecast.wind_mps`, mean wind at 20 ft | m/s |
+| V, σ | `Wind.mean`, `.sigma`: mean wind at the catch; of its turbulence, each horizontal component | m/s |
+| c, m | drag, and mass of all that flies | N·s/m, kg |
+
+V = W₂₀ ln(h/z₀)/ln(h₂₀/z₀), σ = 0.196 W₂₀. A UAV that keeps its station leans by θ with tan θ = c (V + kσ)/(m g) in a gust of k
+standard deviations: that is healthy, and the hinge takes it from the plate. Source: MIL-F-8785C, 3.7, as in `docs/air.md`.
+
+Nothing of this depends on where the wind comes from, nor on what it is like: only on what was foretold. Calm: nothing changes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from armland.scenario import Scenario
+
+FOOT_M = 0.3048
+HEIGHT_M, ROUGH_M = 20.0 * FOOT_M, 0.15 * FOOT_M
+"""Height of W₂₀, and z₀ of a landing."""
+
+TURBULENCE, SINKING = 0.196, 0.1
+"""σ/W₂₀ and σ_w/W₂₀ at and below 10 ft."""
+
+GUST = 2.0
+"""Standard deviations of a gust for which a mission keeps room at every moment."""
+
+STRONGEST = 3.0
+"""Likewise of one that must not bring it to an end."""
+
+SPARE_RAD, MOST_RAD = 0.1, 0.52
+"""Lean that is left to move the UAV while it holds against the strongest gust; largest that an autopilot of this kind is set to:
+AR.Drone, `euler_angle_max`."""
+
+
+class Wind(NamedTuple):
+    """Wind at the catch as it is expected."""
+
+    mean: float
+    sigma: float
+
+    def gust(self, k: float) -> float:
+        """Speed, m/s, of a gust of `k` standard deviations."""
+        return self.mean + k * self.sigma
+
+    @property
+    def sinking(self) -> float:
+        """Speed, m/s, of air that sinks, one standard deviation: it takes along a UAV whose rotors are well."""
+        return SINKING / TURBULENCE * self.sigma
+
+    def lean(self, slope: float, k: float) -> float:
+        """Lean, rad, in such a gust of a UAV whose drag over its weight is `slope`, s/m."""
+        return float(np.arctan(slope * self.gust(k)))
+
+
+def expected(scenario: Scenario) -> Wind:
+    """The wind at the catch as the user of the scenario foretells it."""
+    w20 = scenario.foretold_mps
+    height = max(scenario.place.catch_m[2], ROUGH_M)
+    return Wind(w20 * float(np.log(height / ROUGH_M) / np.log(HEIGHT_M / ROUGH_M)), TURBULENCE * w20)
+
+
+def started(scenario: Scenario, mass: float) -> dict[str, float]:
+    """What is done differently before a flight in wind, by dotted key; nothing in calm.
+
+    The UAV is brought to above the arm, higher by what a gust takes it down before its own hover answers, and is let lean.
+
+    Args:
+        scenario: as it flies.
+        mass: kg, of all that flies.
+    """
+    wind, g, own = expected(scenario), float(np.linalg.norm(scenario.environment.gravity_mps2)), scenario.onboard.hover
+    if wind.mean <= 0.0:
+        return {}
+    rate = scenario.uav.drag_nspm / mass
+    lean = min(wind.lean(rate / g, STRONGEST) + SPARE_RAD, MOST_RAD)
+    down = GUST * rate * wind.sigma / (own.k_position * own.k_velocity + own.k_integral)
+    return {
+        "place.start_above_m": scenario.place.start_above_m + down,
+        "onboard.hover.tilt_max_rad": max(own.tilt_max_rad, lean),
+    }
