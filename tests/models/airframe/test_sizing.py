@@ -41,6 +41,21 @@ def test_attitude_loops_have_the_same_poles():
     np.testing.assert_allclose(quick.onboard.kp_nm, 4.0 * np.array(small.onboard.kp_nm))
 
 
+def test_rotors_nearer_by_four_lag_half_as_long_and_the_loop_follows():
+    """The time of falling a length goes with its root; wider rotors lag no more than the AR.Drone's."""
+    near, wide = (sized(other(1.0, rotors={"place_m": placed(reach)})) for reach in (0.25, 4.0))
+    assert near.rotors.time_constant_s == near.onboard.lead_s == pytest.approx(0.025)
+    np.testing.assert_allclose(near.onboard.kp_nm, 4.0 * np.array(wide.onboard.kp_nm))
+    assert wide.rotors.time_constant_s == 0.05
+    assert sized(other(1.0, rotors={"place_m": placed(0.25), "time_constant_s": 0.05})).onboard.lead_s == 0.05
+
+
+def placed(share):
+    """The AR.Drone's rotors at a share of their distance from the middle."""
+    d = share * 0.127
+    return [[d, -d, 0.03], [-d, -d, 0.03], [-d, d, 0.03], [d, d, 0.03]]
+
+
 def test_forces_over_weight_and_times_are_kept():
     big = sized(other(5.0))
     for key in ("limits.unexplained_n", "bounds.pull_test_n", "control.thrust.rate_nps", "onboard.hover.lift_min_n"):

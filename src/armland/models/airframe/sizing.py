@@ -79,6 +79,11 @@ RANGE = "a lighter UAV asks for a force-torque sensor of a smaller range"
 RULES = (
     Rule("uav.drag_nspm", _weight, "quadrotors of all sizes lose 0.4 to 0.5 of their speed a second"),
     Rule("rotors.radius_m", lambda s: s.reach, "rotors grow with the distance between them"),
+    Rule(
+        "rotors.time_constant_s",
+        lambda s: min(s.reach, 1.0) ** 0.5,
+        "smaller rotors follow sooner: times go with the root of lengths, as those of falling do",
+    ),
     Rule("rotors.drag_torque_m", lambda s: s.radius, "torque over thrust grows with the rotor's radius"),
     Rule("rotors.max_thrust_n", lambda s: s.mass / s.number, "the same thrust over weight"),
     Rule("rotors.min_thrust_n", lambda s: s.mass / s.number, "the same thrust over weight"),
@@ -150,7 +155,10 @@ RULES = (
     Rule("imperfections.force_bias_n", _lighter, RANGE),
     Rule("imperfections.torque_bias_nm", _lighter, RANGE),
 )
-"""In the order in which they are applied: later ones may follow from earlier ones."""
+"""Key, ratio and reason of each."""
+
+FIRST = ("rotors.radius_m", "rotors.time_constant_s", "magnet.rating_n")
+"""Those that are applied before the others, which follow from them by `Size`."""
 
 
 def sized(scenario: Scenario) -> Scenario:
@@ -163,9 +171,8 @@ def sized(scenario: Scenario) -> Scenario:
     if scenario.sized:
         return scenario
     scenario = scenario.resolved(_told(scenario))
-    for group in (("rotors.radius_m", "magnet.rating_n"), tuple(rule.key for rule in RULES)):
-        done = {rule.key for rule in RULES} - set(group) if len(group) == 2 else {"rotors.radius_m", "magnet.rating_n"}
-        scenario = scenario.resolved(_changes(scenario, [r for r in RULES if r.key not in done]))
+    for first in (True, False):
+        scenario = scenario.resolved(_changes(scenario, [r for r in RULES if (r.key in FIRST) is first]))
     return scenario
 
 
