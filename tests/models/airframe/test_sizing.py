@@ -49,7 +49,9 @@ def test_cubes_and_slender_bodies_get_gains_that_the_law_can_have(inertia):
     scenario = sized(load_scenario("landing", {"uav": {"mass_kg": 0.83, "inertia_kgm2": np.diag(inertia).tolist()}}))
     body, wanted = uav_parameters(scenario), Wanted(8.0, 1.0)
     gains = exact_gains(wanted, np.array(scenario.onboard.kp_nm), np.array(scenario.onboard.kd_nms), body)
-    assert gains.k3_attitude < min(scenario.onboard.kp_nm)
+    k1, k2, k3 = gains.k1[:3] / 4.0, gains.k2[:3], gains.k3_attitude / 4.0
+    np.testing.assert_allclose(k1 * k2 + k3, scenario.onboard.kp_nm)
+    assert min(k3, *k1, *k2) > 0.0
     # In proportion to each axis's own inertia alone no k3 serves them all.
     share = np.array(inertia) / [0.006, 0.007, 0.012]
     with pytest.raises(ConfigurationError, match="leave no gains"):
