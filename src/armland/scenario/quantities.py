@@ -124,7 +124,7 @@ def _inertia(value: tuple[Row3, Row3, Row3]) -> tuple[Row3, Row3, Row3]:
     if eigenvalues[0] + eigenvalues[1] < eigenvalues[2] * (1.0 - 1e-9):
         raise ValueError(
             f"no rigid body has the principal inertias {eigenvalues[0]:g}, {eigenvalues[1]:g}, {eigenvalues[2]:g} kg·m²: "
-            "the two smaller must add up to at least the largest"
+            f"the largest can be {eigenvalues[0] + eigenvalues[1]:.6g} at most, the sum of the others"
         )
     return value
 

@@ -588,6 +588,18 @@ def test_sensor_that_reads_another_tool_at_once_is_wrong(bench, gain, change, fo
     assert answer == found
 
 
+@pytest.mark.parametrize(("dies", "found"), [(False, "none"), (True, "wrench_wrong")])
+def test_weight_that_has_just_left_the_magnet_is_no_leap_of_the_sensor(bench, dies, found):
+    """A heavy UAV lies on the magnet with three tools' weights and rises off it; the arm then draws away from it."""
+    for k in range(400):
+        bench.e["plate"] = bench.e["r"] + [0.0, 0.0, 0.002 if k < 200 else 0.2]
+        bench.e["hinge_force"] = [0.0, 0.0, 3.0 * tool(bench) if k < 190 else -tool(bench) if dies and k > 250 else 0.0]
+        answer = find(bench, 1, ["wrench_wrong"], held=0, arm=MOVE)
+        if answer != "none":
+            break
+    assert answer == found
+
+
 @pytest.mark.parametrize(
     ("reads", "arm", "found"),
     [(0.0, HOLD, "wrench_wrong"), (0.2, HOLD, "none"), (-2.0, HOLD, "none"), (0.0, BACK_OFF, "none")],

@@ -69,6 +69,15 @@ def test_propellers_without_mass_stand_where_their_inertia_is():
     assert scenario.rotors.drag_torque_m == pytest.approx(0.02)
 
 
+def test_rotors_that_say_a_side_and_no_number_are_found(tmp_path):
+    sides = ("front_right_prop", "back_right_prop", "back_left_prop", "prop_fl")
+    file = changed(tmp_path, "props.urdf", *((f"prop{i}_link", name) for i, name in enumerate(sides)))
+    np.testing.assert_allclose(read_foreign(file).place, read_foreign(UAVS / "props.urdf").place)
+    # What holds or guards a rotor is none: then nothing says where they are.
+    file = changed(tmp_path, "props.urdf", *((f"prop{i}_link", f"{name}_guard") for i, name in enumerate(sides)))
+    assert read_foreign(file).place is None
+
+
 def test_pivot_by_rule_is_the_papers_and_nearer_where_the_rotors_are():
     wide = foreign_of(of("motors.xml"))
     assert wide.lever[2] == pytest.approx(-0.06)

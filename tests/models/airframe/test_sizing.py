@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from armland.control.design.gains import Wanted, exact_gains
+from armland.errors import ConfigurationError
 from armland.models.airframe.sizing import RULES, at, size_of, sized
+from armland.models.parameters import uav_parameters
 from armland.scenario import load_scenario
 
 
@@ -39,6 +42,35 @@ def test_attitude_loops_have_the_same_poles():
     # No faster than the samples bear, however quick the rotors are.
     quick = sized(other(1.0, rotors={"time_constant_s": 0.005}))
     np.testing.assert_allclose(quick.onboard.kp_nm, 4.0 * np.array(small.onboard.kp_nm))
+
+
+@pytest.mark.parametrize("inertia", [(0.0031, 0.0031, 0.0031), (0.006, 0.024, 0.028), (0.02, 0.005, 0.024)])
+def test_cubes_and_slender_bodies_get_gains_that_the_law_can_have(inertia):
+    scenario = sized(load_scenario("landing", {"uav": {"mass_kg": 0.83, "inertia_kgm2": np.diag(inertia).tolist()}}))
+    body, wanted = uav_parameters(scenario), Wanted(8.0, 1.0)
+    gains = exact_gains(wanted, np.array(scenario.onboard.kp_nm), np.array(scenario.onboard.kd_nms), body)
+    k1, k2, k3 = gains.k1[:3] / 4.0, gains.k2[:3], gains.k3_attitude / 4.0
+    np.testing.assert_allclose(k1 * k2 + k3, scenario.onboard.kp_nm)
+    assert min(k3, *k1, *k2) > 0.0
+    # In proportion to each axis's own inertia alone no k3 serves them all.
+    share = np.array(inertia) / [0.006, 0.007, 0.012]
+    with pytest.raises(ConfigurationError, match="leave no gains"):
+        exact_gains(wanted, share * [0.4, 0.4, 0.3], share * [0.056, 0.056, 0.06], body)
+
+
+def test_rotors_nearer_by_four_lag_half_as_long_and_the_loop_follows():
+    """The time of falling a length goes with its root; wider rotors lag no more than the AR.Drone's."""
+    near, wide = (sized(other(1.0, rotors={"place_m": placed(reach)})) for reach in (0.25, 4.0))
+    assert near.rotors.time_constant_s == near.onboard.lead_s == pytest.approx(0.025)
+    np.testing.assert_allclose(near.onboard.kp_nm, 4.0 * np.array(wide.onboard.kp_nm))
+    assert wide.rotors.time_constant_s == 0.05
+    assert sized(other(1.0, rotors={"place_m": placed(0.25), "time_constant_s": 0.05})).onboard.lead_s == 0.05
+
+
+def placed(share):
+    """The AR.Drone's rotors at a share of their distance from the middle."""
+    d = share * 0.127
+    return [[d, -d, 0.03], [-d, -d, 0.03], [-d, d, 0.03], [d, d, 0.03]]
 
 
 def test_forces_over_weight_and_times_are_kept():

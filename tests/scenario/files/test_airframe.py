@@ -1,10 +1,17 @@
 """UAVs as files of their own: where their values lie, measured thrust, and what is refused."""
 
+from pathlib import Path
+
 import pytest
 
 from armland.errors import ConfigurationError
+from armland.models.airframe.sizing import sized
+from armland.models.airframe.survey import survey, suspicious
+from armland.models.parameters import rotor_set
 from armland.scenario import load_scenario
 from armland.scenario.files.airframe import known, measured, read_airframe, sources
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 BODY = """[uav]
 mass_kg = 1.2
@@ -30,6 +37,18 @@ def test_those_that_come_with_armland_say_where_each_value_is_from(name):
     told = sources(__import__("pathlib").Path(scenario.airframe))
     given = {k for k in scenario.asked if k.startswith(("uav.", "rotors.")) and k != "uav.file"}
     assert given <= set(told) or name == "ardrone2"
+
+
+def test_example_to_copy_can_be_used_as_it_is():
+    scenario = load_scenario("landing", {"airframe": str(EXAMPLES / "hexarotor.toml")})
+    assert rotor_set(scenario).number == 6
+    assert suspicious(sized(scenario), survey(sized(scenario))) == []
+
+
+def test_inertia_that_no_body_has_is_refused_with_the_most_that_one_can(made):
+    flat = made(BODY.replace("0.04]", "0.0401]"))
+    with pytest.raises(ConfigurationError, match=r"0\.02, 0\.02, 0\.0401 kg·m².*can be 0\.04 at most"):
+        load_scenario("landing", {"airframe": str(flat)})
 
 
 def test_values_lie_between_armlands_and_the_users(made):

@@ -42,7 +42,10 @@ BEFORE = (
     Phase("reach", **STANDING, arm="join", duration_s=2.0, timeout_s=5.0).to(
         "touch", "progress > almost_one, uav_seen > half"
     ),
-    Phase("touch", **GRIPPING, arm="close", uav="off", duration_s=1.5, timeout_s=3.0).to("grip", "contact > half"),
+    # What is felt before the arm is half-way to the plate is the arm's own stop before it, which a light UAV's threshold lies below.
+    Phase("touch", **GRIPPING, arm="close", uav="off", duration_s=1.5, timeout_s=3.0).to(
+        "grip", "contact > half, progress > half"
+    ),
     Phase("grip", **GRIPPING, arm="yield", uav="off", timeout_s=2.0).to(
         "spin_up", "elapsed > settled_s, hinge_force < force_free_n", 0.1
     ),

@@ -126,7 +126,7 @@ def seen_layout() -> np.dtype:
                 "f8",
             ),  # N, vertical hinge force beyond what a UAV on the magnet makes with the thrust that is asked of it
             ("zero", "f8"),  # N, that until the magnet was switched off
-            ("usual", "f8"),  # N, the vertical hinge force of late
+            ("usual", "f8"),  # N, the vertical hinge force of late, where nothing touches the plate
         ]
     )
 
@@ -282,7 +282,9 @@ def _sensor_signs(expected: float, row: Record, b: Record, signs: np.ndarray) ->
         nothing += (m.wrench[i] - kept.estimate.wrench.bias[i]) ** 2
     tool = b.told.estimate.wrench.mass * b.told.act.uav.gravity
     leap = abs(e.hinge_force[2] - seen.usual)
-    seen.usual += p.tick_s / ALIVE_S * (e.hinge_force[2] - seen.usual)
+    # What a UAV on the magnet put on the sensor is no part of what an arm that has left it feels.
+    touched = kept.decide.held == 1 or apart <= APART_M**2
+    seen.usual += (1.0 if touched else p.tick_s / ALIVE_S) * (e.hinge_force[2] - seen.usual)
     # On the cradle the arm gives way to what it touches, seen or not.
     clear = apart > APART_M**2 and (row.free == 1 or e.plate_age < LEAPT_S) and row.arm != YIELD
     alone = kept.decide.held == 0 and clear and off < FOLLOWS_MPS**2

@@ -5,7 +5,7 @@
 | body | `uav`, else the one with rotors of those that stand free in the world and weigh something |
 | mass, inertia, centre of mass | it and all bodies on it, joints at zero; the centre of mass is the site `cm`, where there is one |
 | pivot | the site `pivot`; else by rule, the paper's lever, shorter where the rotors sit closer |
-| rotors | actuators at sites; else sites or bodies called rotor, thrust, motor or prop, and a number |
+| rotors | actuators at sites; else sites or bodies called rotor, thrust, motor or prop, and a number or a side |
 | thrust limits, reaction torque, spin | actuators at sites; of a URDF the `<properties>` of gym-pybullet-drones, where it has them |
 """
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from armland.errors import ModelError
 from armland.models.airframe.actuators import Push, pushes_of, urdf_places, urdf_properties
-from armland.models.airframe.found_rotors import CALLED, FEWEST, of_actuators, of_names, with_properties
+from armland.models.airframe.found_rotors import FEWEST, called, of_actuators, of_names, with_properties
 from armland.models.arm_file.inertia import lumped, tensor
 from armland.models.arm_file.reading import read_tree
 from armland.models.arm_file.tree import Inertial, Pose, Tree, here
@@ -95,7 +95,7 @@ def _flying(tree: Tree, pushes: list[Push]) -> int:
 
     def carries(i: int) -> bool:
         frames = [f for f in tree.frames if i in tree.way(f.body)]
-        return any(f.name in pushed for f in frames) or len([f for f in frames if CALLED.fullmatch(f.name)]) >= FEWEST
+        return any(f.name in pushed for f in frames) or len([f for f in frames if called(f.name)]) >= FEWEST
 
     likely = named or [i for i in roots if carries(i)] or roots
     if len(likely) == 1:

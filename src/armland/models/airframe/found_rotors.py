@@ -18,6 +18,14 @@ CALLED = re.compile(
 )
 """Names of rotors: the kind, and its number."""
 
+_SIDE = "(?:front|rear|back|left|right|mid|middle|upper|lower|top|bottom|[fbr][lr]|[lr][fbr])"
+
+SIDED = re.compile(
+    rf"(?:.*?[/_\-.])??((?:{_SIDE}[_\-]?)*)(rotor|thrust|thruster|motor|prop|propeller)s?((?:[_\-]?{_SIDE})*)(?:[_\-]?link)?",
+    re.IGNORECASE,
+)
+"""Names of rotors that say where each is: sides before the kind, the kind, sides behind it."""
+
 KINDS = ("rotor", "thrust", "thruster", "motor", "prop", "propeller")
 """In the order in which they are believed, where a file has several."""
 
@@ -45,7 +53,8 @@ class _Named(NamedTuple):
     """A frame that may be a rotor, of the body that flies."""
 
     kind: str
-    number: int
+    number: int | None
+    """None where the name says a side instead."""
     pose: Pose
     is_site: bool
 
@@ -117,24 +126,35 @@ def of_names(tree: Tree, poses: dict[int, Pose], placed: dict[str, Array], cm: A
     found = _named(tree, poses, placed)
     for is_site in (True, False):
         for kind in KINDS:
-            family = {r.number: r.pose for r in reversed(found) if r.kind == kind and r.is_site is is_site}
+            alike = [r for r in found if r.kind == kind and r.is_site is is_site]
+            family = {r.number: r.pose for r in reversed(alike) if r.number is not None}
+            at = [r.pose for r in alike if r.number is None]
             if len(family) >= FEWEST:
                 at = [family[n] for n in _counted(kind, sorted(family), tree.what)]
+            if len(at) >= FEWEST:
                 return FoundRotors(np.array([p.pos - cm for p in at]), np.array([matrix(p.quat)[:, 2] for p in at]))
     return None
+
+
+def called(name: str) -> tuple[str, int | None] | None:
+    """Kind of the rotor that is called `name`, and its number, None where it has a side instead; None of what is no rotor."""
+    if match := CALLED.fullmatch(name):
+        return match.group(1).lower(), int(match.group(2))
+    match = SIDED.fullmatch(name)
+    return (match.group(2).lower(), None) if match and (match.group(1) or match.group(3)) else None
 
 
 def _named(tree: Tree, poses: dict[int, Pose], placed: dict[str, Array]) -> list[_Named]:
     bodies, out, none = {b.name for b in tree.bodies}, list[_Named](), np.zeros(3)
     for f in tree.frames:
-        match = CALLED.fullmatch(f.name)
-        if match is None or f.body not in poses:
+        rotor = called(f.name)
+        if rotor is None or f.body not in poses:
             continue
         own, inertial = f.name in bodies, tree.bodies[f.body].inertial
         shift = none if not own else inertial.pos if inertial is not None else placed.get(f.name, none)
         pose = poses[f.body].then(f.pose)
         at = Pose(pose.pos + matrix(pose.quat) @ shift, pose.quat)
-        out.append(_Named(match.group(1).lower(), int(match.group(2)), at, not own))
+        out.append(_Named(*rotor, at, not own))
     return out
 
 

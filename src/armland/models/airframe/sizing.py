@@ -32,6 +32,10 @@ CALM, CALM_S = "estimation.contact.calm_s", 0.025
 PADS_M, BEYOND_M = 0.015, 0.007
 """Of the AR.Drone's magnet: radius of the circle of pads, and by how much the plate's exceeds it."""
 
+SLENDER = (0.75, 0.75, 0.97)
+"""Least ratio of inertia by which an axis's gains are made, over the larger one of roll and pitch: the law's one k₃ lies between
+kp − kd²/4J, at most 0.29 N·m/rad times that, and kp of each axis, 0.4, 0.4 and 0.3 N·m/rad times its own."""
+
 HOLDS = 0.15
 """Least ratio of the magnet's rating, 27 N: the LWR pushes sideways with up to 1.6 N when it comes to rest on the cradle."""
 
@@ -67,11 +71,16 @@ def _plate(s: Size) -> float:
 
 
 def _stiffness(s: Size) -> tuple[float, ...]:
-    return tuple(j * s.bandwidth**2 for j in s.inertia)
+    return tuple(j * s.bandwidth**2 for j in _axes(s))
 
 
 def _damping(s: Size) -> tuple[float, ...]:
-    return tuple(j * s.bandwidth for j in s.inertia)
+    return tuple(j * s.bandwidth for j in _axes(s))
+
+
+def _axes(s: Size) -> tuple[float, ...]:
+    most = max(s.inertia[0], s.inertia[1])
+    return tuple(max(j, share * most) for j, share in zip(s.inertia, SLENDER, strict=True))
 
 
 WEIGHT = "grows with the weight"
@@ -81,11 +90,20 @@ RANGE = "a lighter UAV asks for a force-torque sensor of a smaller range"
 RULES = (
     Rule("uav.drag_nspm", _weight, "quadrotors of all sizes lose 0.4 to 0.5 of their speed a second"),
     Rule("rotors.radius_m", lambda s: s.reach, "rotors grow with the distance between them"),
+    Rule(
+        "rotors.time_constant_s",
+        lambda s: min(s.reach, 1.0) ** 0.5,
+        "smaller rotors follow sooner: times go with the root of lengths, as those of falling do",
+    ),
     Rule("rotors.drag_torque_m", lambda s: s.radius, "torque over thrust grows with the rotor's radius"),
     Rule("rotors.max_thrust_n", lambda s: s.mass / s.number, "the same thrust over weight"),
     Rule("rotors.min_thrust_n", lambda s: s.mass / s.number, "the same thrust over weight"),
-    Rule("onboard.kp_nm", _stiffness, "inertia times the square of the bandwidth"),
-    Rule("onboard.kd_nms", _damping, "inertia times the bandwidth"),
+    Rule(
+        "onboard.kp_nm",
+        _stiffness,
+        "inertia times the square of the bandwidth, of no axis much less than of the largest",
+    ),
+    Rule("onboard.kd_nms", _damping, "inertia times the bandwidth, as above"),
     Rule("onboard.lead_s", lambda s: s.lag, "makes up for the rotors' lag"),
     Rule("onboard.watched_n", lambda s: s.mass / s.number, WEIGHT),
     Rule("onboard.run_down_nps", _weight, WEIGHT),
@@ -152,7 +170,10 @@ RULES = (
     Rule("imperfections.force_bias_n", _lighter, RANGE),
     Rule("imperfections.torque_bias_nm", _lighter, RANGE),
 )
-"""In the order in which they are applied: later ones may follow from earlier ones."""
+"""Key, ratio and reason of each."""
+
+FIRST = ("rotors.radius_m", "rotors.time_constant_s", "magnet.rating_n")
+"""Those that are applied before the others, which follow from them by `Size`."""
 
 
 def sized(scenario: Scenario) -> Scenario:
@@ -165,9 +186,8 @@ def sized(scenario: Scenario) -> Scenario:
     if scenario.sized:
         return scenario
     scenario = scenario.resolved(_told(scenario))
-    for group in (("rotors.radius_m", "magnet.rating_n"), tuple(rule.key for rule in RULES)):
-        done = {rule.key for rule in RULES} - set(group) if len(group) == 2 else {"rotors.radius_m", "magnet.rating_n"}
-        scenario = scenario.resolved(_changes(scenario, [r for r in RULES if r.key not in done]))
+    for first in (True, False):
+        scenario = scenario.resolved(_changes(scenario, [r for r in RULES if (r.key in FIRST) is first]))
     return scenario.resolved(_in_wind(scenario)) if scenario.foretold_mps > 0.0 else scenario
 
 

@@ -19,6 +19,8 @@ def print_uav(rows: list[UavRow], found: UavSurvey, notes: list[str], odd: list[
     """Print it."""
     console = terminal()
     table = titled("UAV", "key", "value", "unit", "source")
+    # A key that is cut off can be neither looked up nor set.
+    table.columns[0].no_wrap = True
     for row in rows:
         table.add_row(Text(row.key), Text(_value(row.value)), Text(row.unit), Text(row.source))
     console.print(table)
