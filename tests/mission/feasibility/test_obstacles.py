@@ -6,7 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from armland.errors import ConfigurationError
+from armland.errors import ConfigurationError, MountingError
+from armland.experiments.episode import prepare
 from armland.experiments.judge.solids import solids_of
 from armland.mission.feasibility.obstacles import CRADLE_M, FLOOR_M, UAV_M, Obstacles
 from armland.mission.feasibility.reach import check_beside
@@ -107,14 +108,14 @@ MARKER_M = 0.1064 + 0.030
 def gripping(request, tmp_path):
     """A scenario with an arm of which a finger ends `top` m out from the flange, 55 mm before the tool's axis."""
 
-    def make(top, ee="tool0"):
+    def make(top, ee="tool0"):  # "" leaves it to armland
         text, middle = (ARMS / request.param).read_text("utf-8"), top - 0.1 - 0.02
         old, new = (
             ("</robot>", FINGER) if request.param == "ok.urdf" else ('<site name="tool0" pos="0 0 0.07"/>', FINGER_MJCF)
         )
         path = tmp_path / request.param
         path.write_text(text.replace(old, new.format(middle=middle)), encoding="utf-8")
-        return load_scenario("landing", {"arm": {"file": str(path), "ee": ee}}).believed()
+        return load_scenario("landing", {"arm": {"file": str(path), **({"ee": ee} if ee else {})}}).believed()
 
     return make
 
@@ -128,10 +129,16 @@ def test_finger_beside_the_tool_is_refused_where_it_reaches_the_uav(gripping, to
     if top < MARKER_M - UAV_M:
         check_beside(scenario, around)
         return
-    with pytest.raises(
-        ConfigurationError, match=r"'finger' on link 'l7' is .* the UAV in whatever pose"
-    ):
+    with pytest.raises(ConfigurationError, match=r"'finger' on link 'l7' is .* the UAV in whatever pose"):
         check_beside(scenario, around)
+
+
+def test_end_effector_that_nobody_chose_is_one_that_works(gripping):
+    flight = prepare(gripping(0.136, ""), "landing", 1)
+    assert flight.scenario.arm.ee == "finger"
+    assert flight.moved.startswith("arm.ee = 'finger' chosen, because 'finger' on link 'l7' is within 0 mm of the UAV")
+    with pytest.raises(MountingError):
+        prepare(gripping(0.136), "landing", 1)
 
 
 def test_refusal_names_an_end_effector_that_works(gripping):

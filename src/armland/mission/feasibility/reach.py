@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.control.laws.realisation import elbow_of
-from armland.errors import ConfigurationError, ModelError, WorkspaceError
+from armland.errors import ConfigurationError, ModelError, MountingError, WorkspaceError
 from armland.mission.feasibility.obstacles import Obstacles
 from armland.mission.feasibility.way import Stop, check_clear, stops
 from armland.mission.table.mission import At, Mission
@@ -86,7 +86,7 @@ def check_beside(scenario: Scenario, around: Obstacles) -> None:
     """Refuse an arm of which something that is fixed to its last link, as a gripper, is where the tool holds the UAV.
 
     Raises:
-        ConfigurationError: what it is, and another end effector of the file that works, if there is one.
+        MountingError: what it is, and another end effector of the file that works, if there is one.
     """
     near = around.held()
     if near.room >= 0.0:
@@ -96,9 +96,10 @@ def check_beside(scenario: Scenario, around: Obstacles) -> None:
     tip = arm_file(scenario).chain.tip
     found = next((e for e in others(read_tree(resolve(scenario.arm.file)), tip) if _clear(scenario, e)), None)
     works = f"--ee '{found}' mounts the tool clear of it, and so does" if found else "what works is"
-    raise ConfigurationError(
+    raise MountingError(
         f"{near.link} is {how} the UAV in whatever pose the tool holds it: the tool ends {1e3 * scenario.tool.length_m:.0f} mm out "
-        f"from the end effector {tip.label!r}, and {1e3 * near.clearance:.0f} mm are kept; {works} a file without it"
+        f"from the end effector {tip.label!r}, and {1e3 * near.clearance:.0f} mm are kept; {works} a file without it",
+        found,
     )
 
 
