@@ -103,6 +103,7 @@ class Obstacles:
         }
         self._pairs = self._outside(links, others) + self._inside([*solid, *own])
         self._ends, self._clearance = _ends(self._pairs), np.array([p.clearance for p in self._pairs])
+        self._size = self._sizes(self._ends)
 
     def put_cradle(self, put_down: Array, heading_deg: float) -> None:
         """Put the cradle where the UAV stands on it with its pivot at `put_down` (3,), m, D, its rails along the heading."""
@@ -121,8 +122,9 @@ class Obstacles:
         mujoco.mj_kinematics(self._model, self._data)
         best, kept = Near(FAR_M, "", "", 0.0), np.maximum(self._clearance - slack, 0.0)
         # The nearest by their spheres are measured first, and most never.
-        least = self._apart(self._ends) - kept
-        for i in np.argsort(least, kind="stable"):
+        least = self._apart(self._ends) - self._size - kept
+        near = np.flatnonzero(least < FAR_M)
+        for i in near[np.argsort(least[near], kind="stable")].tolist():
             if least[i] >= best.room or (any_will_do and best.room < 0.0):
                 break
             pair, most = self._pairs[i], max(best.room + kept[i], TOUCH_M)
@@ -132,9 +134,12 @@ class Obstacles:
         return best
 
     def _apart(self, ends: NDArray[np.int64]) -> Array:
-        # Distances of the spheres around the shapes of pairs, m: the shapes themselves are no nearer.
-        at = self._data.geom_xpos[ends]
-        return np.asarray(np.linalg.norm(at[:, 0] - at[:, 1], axis=1) - self._model.geom_rbound[ends].sum(axis=1))
+        # Distances of the middles of shapes, m. Less `_sizes` they are those of the spheres around them: the shapes are no nearer.
+        step = self._data.geom_xpos[ends[0]] - self._data.geom_xpos[ends[1]]
+        return np.asarray(np.sqrt(np.einsum("ij,ij->i", step, step)))
+
+    def _sizes(self, ends: NDArray[np.int64]) -> Array:
+        return np.asarray(self._model.geom_rbound[ends].sum(axis=0))
 
     def held(self) -> Near:
         """The tightest place between what does not move against the tool and a UAV that it holds: the same in all poses."""
@@ -186,11 +191,12 @@ class Obstacles:
         # Without those that are built into each other, or whose distance no joint changes: a plan can do nothing about them.
         samples = poses(self._model)[:SAMPLED]
         far, ends = np.full((len(samples), len(pairs)), SAME_M), _ends(pairs)
+        size = self._sizes(ends)
         self.put_cradle(np.array([0.0, 0.0, 99.0]), 0.0)
         for row, q in zip(far, samples, strict=True):
             self._data.qpos[:] = q
             mujoco.mj_kinematics(self._model, self._data)
-            for i in np.flatnonzero(self._apart(ends) < SAME_M):
+            for i in np.flatnonzero(self._apart(ends) - size < SAME_M):
                 pair = pairs[i]
                 row[i] = mujoco.mj_geomDistance(self._model, self._data, pair.one, pair.two, SAME_M, None)
         always, same = (far < 0.0).mean(axis=0) > ALWAYS, (np.ptp(far, axis=0) < TOUCH_M) & (far[0] < SAME_M)
@@ -218,7 +224,7 @@ class Obstacles:
 
 
 def _ends(pairs: list[_Pair]) -> NDArray[np.int64]:
-    return np.array([(p.one, p.two) for p in pairs], np.int64).reshape(-1, 2)
+    return np.array([[p.one for p in pairs], [p.two for p in pairs]], np.int64)
 
 
 def _add_links(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[str]:
