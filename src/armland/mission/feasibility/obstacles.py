@@ -17,18 +17,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from armland.models.airframe.body import add_skids, drawn
-from armland.models.airframe.file import uav_file
-from armland.models.airframe.rotor_set import beams
 from armland.models.arm_file.spec import SHAPE
 from armland.models.arm_file.strength import poses
 from armland.models.description import EE_SITE, compile_spec
-from armland.models.parameters import arm_spec, rotor_set, uav_parameters
+from armland.models.parameters import arm_spec, uav_parameters
+from armland.models.solids import OWN, add_cradle, add_links, add_tool, add_uav
 from armland.rotations import Array
 from armland.scenario import Scenario
-
-LINK_RADIUS_M, TOOL_RADIUS_M, BEAM_RADIUS_M = 0.06, 0.03, 0.015
-"""Of the capsules along the links, around the tool, and of the beams that carry the rotors."""
 
 FLOOR_M, CRADLE_M, UAV_M = 0.01, 0.01, 0.01
 """Clearance of the arm to floor, cradle and UAV. To the cradle it is less than `control.approach.clearance_m`, which the corridor of
@@ -42,14 +37,6 @@ SPARE_M = 0.002
 
 ALWAYS, SAMPLED = 0.9, 60
 """Share of random poses, and their number: two shapes that meet in more of them are built into each other."""
-
-
-MARKER_EDGE, MARKER_M = 10.0 / 8.0, 5e-4
-"""Edge of the marker's plate over that of its black square, with a margin of one of eight cells, and half its thickness."""
-
-
-OWN = ("tool", "sensor")
-"""Names of what armland mounts on the arm."""
 
 
 class Near(NamedTuple):
@@ -83,9 +70,9 @@ class Obstacles:
         spec = arm_spec(scenario)
         bare = compile_spec(spec, "the arm")
         solid = [g.name for g in spec.geoms if g.name.startswith(SHAPE)]
-        own = _add_tool(spec, scenario)
-        links = [*solid, *_add_links(spec, bare), *own]
-        uav, cradle = _add_uav(spec, scenario), _add_cradle(spec, scenario)
+        own = add_tool(spec, scenario)
+        links = [*solid, *add_links(spec, bare), *own]
+        uav, cradle = add_uav(spec, scenario), add_cradle(spec, scenario)
         spec.worldbody.add_geom(
             name="floor", type=mujoco.mjtGeom.mjGEOM_BOX, size=[9.0, 9.0, 0.5], pos=[0.0, 0.0, -0.5]
         )
@@ -225,72 +212,3 @@ class Obstacles:
 
 def _ends(pairs: list[_Pair]) -> NDArray[np.int64]:
     return np.array([[p.one for p in pairs], [p.two for p in pairs]], np.int64)
-
-
-def _add_links(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[str]:
-    data, names = mujoco.MjData(model), []
-    mujoco.mj_kinematics(model, data)
-    shaped = {int(model.geom_bodyid[i]) for i in range(model.ngeom) if model.geom(i).name.startswith(SHAPE)}
-    for i in range(model.njnt - 1):
-        body = int(model.jnt_bodyid[i])
-        if i < model.njnt // 2 and body in shaped:
-            continue
-        ends = (data.xanchor[[i, i + 1]] - data.xpos[body]) @ data.xmat[body].reshape(3, 3)
-        if np.linalg.norm(ends[1] - ends[0]) < 2.0 * LINK_RADIUS_M:
-            ends = ends.mean(axis=0) + np.array([[0.0, 0.0, -1e-4], [0.0, 0.0, 1e-4]])
-        names.append(f"along_{i + 1}")
-        _add_capsule(spec.joint(model.joint(i).name).parent, ends, LINK_RADIUS_M, names[-1])
-    return names
-
-
-def _add_tool(spec: mujoco.MjSpec, scenario: Scenario) -> tuple[str, ...]:
-    tool = scenario.tool
-    top = tool.length_m - tool.sensor_length_m - scenario.plate.drop_m - TOOL_RADIUS_M
-    ends = np.array([[0.0, 0.0, -tool.sensor_length_m], [0.0, 0.0, top]])
-    tool, sensor = OWN
-    _add_capsule(spec.body("armland_tool"), ends, TOOL_RADIUS_M, tool)
-    spec.body("armland_sensor").geoms[0].name = sensor
-    return OWN
-
-
-def _add_uav(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:
-    # Its origin is the centre of mass, as in its file.
-    body, model = spec.worldbody.add_body(name="uav", mocap=True), compile_spec(uav_file(scenario), "the UAV")
-    cm = model.site("cm").pos
-    for i, ends in enumerate(beams(rotor_set(scenario).place)):
-        _add_capsule(body, np.array(ends), BEAM_RADIUS_M, f"beam_{i}")
-    for g in drawn(model, model.body("uav").id):
-        kind, at = mujoco.mjtGeom(int(model.geom_type[g])), {"pos": model.geom_pos[g] - cm, "quat": model.geom_quat[g]}
-        body.add_geom(type=kind, size=model.geom_size[g], mass=0, contype=0, conaffinity=0, **at)
-    add_skids(body, scenario.skids)
-    c, kind = scenario.camera, mujoco.mjtGeom.mjGEOM_BOX
-    size = [*(2 * [0.5 * MARKER_EDGE * c.marker_size_m]), MARKER_M]
-    body.add_geom(
-        type=kind, pos=np.array(c.marker_m) + [0.0, 0.0, MARKER_M], size=size, mass=0, contype=0, conaffinity=0
-    )
-    for i, geom in enumerate(body.geoms):
-        geom.name = f"uav_{i}"
-    return [geom.name for geom in body.geoms]
-
-
-def _add_cradle(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:
-    # Its origin is the middle of the slot at the rails' upper edge; the legs reach through the floor.
-    c, body, names = scenario.cradle, spec.worldbody.add_body(name="cradle", mocap=True), []
-    x, across, z = 0.5 * c.length_m, 0.5 * c.gap_m + c.radius_m, -c.radius_m
-    for side in (-1.0, 1.0):
-        y = side * across
-        names += [f"rail{side:+.0f}", f"leg{side:+.0f}a", f"leg{side:+.0f}b"]
-        _add_capsule(body, np.array([[-x, y, z], [x, y, z]]), c.radius_m, names[-3])
-        for name, foot in zip(names[-2:], (-0.3 * x, 0.8 * x), strict=True):
-            leg = np.array([[foot, y, z], [foot, 1.5 * y, -LEG_M]])
-            _add_capsule(body, leg, 0.7 * c.radius_m, name)
-    return names
-
-
-LEG_M = 0.6
-"""Length of the cradle's legs below its rails: they lean outwards."""
-
-
-def _add_capsule(body: mujoco.MjsBody, ends: Array, radius: float, name: str) -> None:
-    kind = mujoco.mjtGeom.mjGEOM_CAPSULE
-    body.add_geom(name=name, type=kind, fromto=ends.ravel(), size=[radius, 0, 0], mass=0, contype=0, conaffinity=0)
