@@ -17,11 +17,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from armland.models.airframe.solids import OWN, add_cradle, add_links, add_tool, add_uav
 from armland.models.arm_file.spec import SHAPE
 from armland.models.arm_file.strength import poses
 from armland.models.description import EE_SITE, compile_spec
 from armland.models.parameters import arm_spec, uav_parameters
-from armland.models.solids import OWN, add_cradle, add_links, add_tool, add_uav
 from armland.rotations import Array
 from armland.scenario import Scenario
 

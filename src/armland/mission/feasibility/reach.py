@@ -94,13 +94,23 @@ def check_beside(scenario: Scenario, around: Obstacles) -> None:
     distance = 1e3 * (near.room + near.clearance)
     how = f"{-distance:.0f} mm inside" if distance < 0.0 else f"within {distance:.0f} mm of"
     tip = arm_file(scenario).chain.tip
-    found = next((e for e in others(read_tree(resolve(scenario.arm.file)), tip) if _clear(scenario, e)), None)
-    works = f"--ee '{found}' mounts the tool clear of it, and so does" if found else "what works is"
+    # The same frame with another axis before other frames.
+    ends = sorted(others(read_tree(resolve(scenario.arm.file)), tip), key=lambda e: _frame(e) != _frame(tip.label))
+    found = next((e for e in ends if _clear(scenario, e)), None)
+    works = (
+        f"--ee '{found}' mounts the tool clear of it, and so does"
+        if found
+        else "what works is a frame at its outer end, or"
+    )
     raise MountingError(
         f"{near.link} is {how} the UAV in whatever pose the tool holds it: the tool ends {1e3 * scenario.tool.length_m:.0f} mm out "
         f"from the end effector {tip.label!r}, and {1e3 * near.clearance:.0f} mm are kept; {works} a file without it",
         found,
     )
+
+
+def _frame(end: str) -> str:
+    return end.partition(":")[0]
 
 
 def _clear(scenario: Scenario, ee: str) -> bool:

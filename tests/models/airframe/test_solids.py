@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from armland.models.solids import add_cradle, add_uav
+from armland.models.airframe.solids import add_cradle, add_uav
 from armland.scenario import load_scenario
 
 
