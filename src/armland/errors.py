@@ -17,6 +17,15 @@ class WorkspaceError(ConfigurationError):
     """A trajectory that the arm cannot follow: too far, or beyond a joint's range."""
 
 
+class MountingError(ConfigurationError):
+    """What is fixed beside the tool, as a gripper, is where the tool holds the UAV."""
+
+    def __init__(self, message: str, works: str | None) -> None:
+        super().__init__(message)
+        self.works = works
+        """An end effector of the same arm that works, as it is asked for; None where none does."""
+
+
 class LogError(ArmlandError):
     """A run log that cannot be read or written."""
 

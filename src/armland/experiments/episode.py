@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from armland.errors import WorkspaceError
+from armland.errors import MountingError, WorkspaceError
 from armland.experiments.judge.brief import Brief, brief_of, metadata_of
 from armland.experiments.judge.judgement import Judgement, check_kind, judge
 from armland.experiments.placing import placed
@@ -90,6 +90,14 @@ def prepare(
     scenario = sized(scenario)
     try:
         return make(scenario)
+    except MountingError as refusal:
+        if scenario.arm.ee is not None or refusal.works is None:
+            raise
+        # Nobody chose the end effector: one that works is as good.
+        other = scenario.replaced({"arm": {"ee": refusal.works}})
+        flight = prepare(other, mission, law=law, experiment=experiment, trial=trial)
+        chosen = f"arm.ee = {refusal.works!r} chosen, because {refusal}"
+        return flight._replace(moved=f"{chosen}. {flight.moved}" if flight.moved else chosen)
     except WorkspaceError as refusal:
         value = mission_named(mission)
         if value.start == "hinged":

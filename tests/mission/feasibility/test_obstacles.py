@@ -1,11 +1,19 @@
 """Distances of the arm to what is around it, against distances worked out by hand."""
 
+from pathlib import Path
+
+import mujoco
 import numpy as np
 import pytest
 
-from armland.mission.feasibility.obstacles import CRADLE_M, FLOOR_M, Obstacles
+from armland.errors import ConfigurationError, MountingError
+from armland.experiments.episode import prepare
+from armland.experiments.judge.solids import solids_of
+from armland.mission.feasibility.obstacles import CRADLE_M, FLOOR_M, UAV_M, Obstacles
+from armland.mission.feasibility.reach import check_beside
 from armland.models.parameters import arm_model
 from armland.models.posture import lead
+from armland.plant.scene.composition import build_scene
 from armland.scenario import load_scenario
 
 AWAY = np.array([0.0, 0.0, 50.0])
@@ -79,3 +87,84 @@ def test_uav_that_is_held_too_low_meets_the_arm(arm, scenario, around):
     sunk = around.nearest(q, np.array(scenario.place.catch_m) - [0.1, 0.0, 0.25])
     assert held.room > 0.0 > sunk.room
     assert sunk.other == "the UAV"
+
+
+ARMS = Path(__file__).parents[2] / "data" / "arms"
+
+FINGER = """<link name="finger"><collision><origin xyz="0.055 0 {middle}"/><geometry><box size="0.01 0.02 0.04"/></geometry></collision>
+  <inertial><mass value="0.05"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="grip" type="prismatic"><parent link="tool0"/><child link="finger"/><origin xyz="0 0 0.1"/><axis xyz="0 1 0"/>
+  <limit lower="0" upper="0.01" effort="20" velocity="1"/></joint></robot>"""
+
+FINGER_MJCF = """<site name="tool0" pos="0 0 0.07"/><body name="hand" pos="0 0 0.07"><geom type="box" size="0.03 0.03 0.01"/>
+  <body name="finger" pos="0 0 0.1"><joint name="grip" type="slide" axis="0 1 0" range="0 0.01"/><inertial pos="0 0 0" mass="0.05"
+  diaginertia="1e-4 1e-4 1e-4"/><geom type="box" pos="0.055 0 {middle}" size="0.005 0.01 0.02"/></body></body>"""
+
+MARKER_M = 0.1064 + 0.030
+"""Out from the flange, the lower side of the AR.Drone's marker: 30 mm above the pivot, where the tool ends."""
+
+
+@pytest.fixture(params=["ok.urdf", "ok.xml"])
+def gripping(request, tmp_path):
+    """A scenario with an arm of which a finger ends `top` m out from the flange, 55 mm before the tool's axis."""
+
+    def make(top, ee="tool0"):  # "" leaves it to armland
+        text, middle = (ARMS / request.param).read_text("utf-8"), top - 0.1 - 0.02
+        old, new = (
+            ("</robot>", FINGER) if request.param == "ok.urdf" else ('<site name="tool0" pos="0 0 0.07"/>', FINGER_MJCF)
+        )
+        path = tmp_path / request.param
+        path.write_text(text.replace(old, new.format(middle=middle)), encoding="utf-8")
+        return load_scenario("landing", {"arm": {"file": str(path), **({"ee": ee} if ee else {})}}).believed()
+
+    return make
+
+
+@pytest.mark.parametrize("top", [0.115, 0.125, 0.13, 0.136])
+def test_finger_beside_the_tool_is_refused_where_it_reaches_the_uav(gripping, top):
+    scenario = gripping(top)
+    around = Obstacles(scenario)
+    near = around.held()
+    assert near.room + UAV_M == pytest.approx(MARKER_M - top, abs=1e-6)
+    if top < MARKER_M - UAV_M:
+        check_beside(scenario, around)
+        return
+    with pytest.raises(ConfigurationError, match=r"'finger' on link 'l7' is .* the UAV in whatever pose"):
+        check_beside(scenario, around)
+
+
+def test_end_effector_that_nobody_chose_is_one_that_works(gripping):
+    flight = prepare(gripping(0.136, ""), "landing", 1)
+    assert flight.scenario.arm.ee == "finger"
+    assert flight.moved.startswith("arm.ee = 'finger' chosen, because 'finger' on link 'l7' is within 0 mm of the UAV")
+    with pytest.raises(MountingError):
+        prepare(gripping(0.136), "landing", 1)
+
+
+def test_refusal_names_an_end_effector_that_works(gripping):
+    scenario = gripping(0.15)
+    with pytest.raises(ConfigurationError, match=r"end effector 'tool0'.*; --ee 'finger' mounts the tool clear of it"):
+        check_beside(scenario, Obstacles(scenario))
+    check_beside(gripping(0.15, "finger"), Obstacles(gripping(0.15, "finger")))
+
+
+def test_planner_and_judge_take_the_same_shapes_for_the_arm_and_the_uav(gripping):
+    """Of a scene that the planner has measured nothing is left that the judge alone would see."""
+    scenario = gripping(0.15)
+    judged = mujoco.MjModel.from_xml_string(solids_of(build_scene(scenario, "free")))
+    planned = Obstacles(scenario)
+    model = planned._model
+    measured = {g for pair in planned._pairs if pair.other == "the UAV" for g in (pair.one, pair.two)}
+
+    def shapes(model, geoms, body):
+        own = [g for g in geoms if model.body(int(model.geom_bodyid[g])).name == body]
+        return {(int(model.geom_type[g]), *np.round(model.geom_size[g], 6)) for g in own}
+
+    for theirs, ours in (
+        ("uav/uav", "uav"),
+        *((f"arm/l{i}", f"arm/l{i}") for i in range(1, 8)),
+        ("armland_sensor",) * 2,
+    ):
+        wanted = shapes(judged, range(judged.ngeom), theirs)
+        assert wanted, theirs
+        assert wanted <= shapes(model, measured, ours), theirs

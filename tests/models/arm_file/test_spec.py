@@ -45,3 +45,16 @@ def test_shapes_for_contact_have_names_and_looks_have_none(changed):
     model = read_arm(changed("ok.xml", ('<joint name="j3"', geoms))).spec().compile()
     own = [model.geom(i) for i in range(model.ngeom) if model.body(int(model.geom_bodyid[i])).name == "arm/l3"]
     assert [(g.name.startswith("arm/shape_"), int(g.group[0])) for g in own] == [(False, 2), (True, 3)]
+    # A link that is only drawn is touched as it is drawn.
+    seen = read_arm(changed("ok.xml", ('<joint name="j3"', geoms.replace('<geom type="sphere" size="0.1"/>', ""))))
+    model = seen.spec().compile()
+    own = [model.geom(i) for i in range(model.ngeom) if model.body(int(model.geom_bodyid[i])).name == "arm/l3"]
+    assert [(g.name.startswith("arm/shape_"), int(g.group[0])) for g in own] == [(True, 2)]
+
+
+def test_shapes_are_named_by_the_body_that_has_them(changed):
+    """A locked finger is part of the last link, and is still called a finger."""
+    ball = '<collision><geometry><sphere radius="0.01"/></geometry></collision></link>\n  <joint name="grip_l"'
+    model = read_arm(changed("gripper.urdf", ('</link>\n  <joint name="grip_l"', ball))).spec().compile()
+    (found,) = (model.geom(i) for i in range(model.ngeom) if model.geom(i).name.endswith(":finger_l"))
+    assert model.body(int(found.bodyid[0])).name == "arm/l7"

@@ -5,7 +5,7 @@ It is made from the plant's scene, deviations included, and stands in a log as t
 | solid | shapes |
 |---|---|
 | link of the arm | those that its file means for contact, else those that it draws, else what stands for a link without any |
-| tool | a capsule around sensor, magnet and camera |
+| tool | a capsule around magnet and camera, the sensor below it as it is drawn |
 | UAV | all that its file draws; not its plate, which the tool grips |
 | cradle, floor | rails and legs; the plane that the arm stands on |
 """
@@ -15,6 +15,7 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
+from armland.models.airframe.body import drawn
 from armland.models.arm_file.spec import PREFIX, SHAPE
 from armland.models.arm_file.strength import poses
 from armland.plant.scene.composition import Scene
@@ -49,12 +50,12 @@ def solids_of(scene: Scene) -> str:
             bits = (ARM_BIT, ARM_BIT | STAND_BIT | (0 if name == TOOL else UAV_BIT))
             _add_shapes(bodies[body], model, body, _touched(model, body), bits)
     uav = spec.worldbody.add_body(name=UAV, mocap=True)
-    _add_shapes(uav, model, scene.uav_body, _drawn(model, scene.uav_body), (UAV_BIT, 0))
+    _add_shapes(uav, model, scene.uav_body, drawn(model, scene.uav_body), (UAV_BIT, 0))
     for name in ("stand", "cradle"):
         if name in {model.body(i).name for i in range(model.nbody)}:
             b = model.body(name)
             fixed = spec.worldbody.add_body(name=name, pos=b.pos, quat=b.quat)
-            _add_shapes(fixed, model, b.id, _drawn(model, b.id), (STAND_BIT, 0))
+            _add_shapes(fixed, model, b.id, drawn(model, b.id), (STAND_BIT, 0))
     plane = mujoco.mjtGeom.mjGEOM_PLANE
     spec.worldbody.add_geom(name=FLOOR, type=plane, size=[0, 0, 0.1], contype=STAND_BIT, conaffinity=0)
     for one, two in _left_out(spec.compile()):
@@ -86,7 +87,7 @@ def _touched(model: mujoco.MjModel, body: int) -> list[int]:
         return [model.geom("tool").id] if "tool" in _names(model, body) else []
     names = _names(model, body)
     meant = [g for n, g in names.items() if n.startswith(SHAPE)]
-    return meant or _drawn(model, body) or [g for n, g in names.items() if n.endswith("_shape")]
+    return meant or drawn(model, body) or [g for n, g in names.items() if n.endswith("_shape")]
 
 
 def _names(model: mujoco.MjModel, body: int) -> dict[str, int]:
@@ -94,24 +95,17 @@ def _names(model: mujoco.MjModel, body: int) -> dict[str, int]:
     return {model.geom(g).name: g for g in range(first, first + int(model.body_geomnum[body])) if model.geom(g).name}
 
 
-def _drawn(model: mujoco.MjModel, body: int) -> list[int]:
-    first = int(model.body_geomadr[body])
-    return [g for g in range(first, first + int(model.body_geomnum[body])) if model.geom_group[g] == 2]
-
-
 def _add_shapes(body: mujoco.MjsBody, model: mujoco.MjModel, of: int, shapes: list[int], bits: tuple[int, int]) -> None:
     for g in shapes:
-        # A mesh is no primitive and not kept.
-        if model.geom_type[g] < int(mujoco.mjtGeom.mjGEOM_MESH):
-            body.add_geom(
-                type=mujoco.mjtGeom(int(model.geom_type[g])),
-                size=model.geom_size[g],
-                pos=model.geom_pos[g],
-                quat=model.geom_quat[g],
-                contype=bits[0],
-                conaffinity=bits[1],
-                mass=0.0,
-            )
+        body.add_geom(
+            type=mujoco.mjtGeom(int(model.geom_type[g])),
+            size=model.geom_size[g],
+            pos=model.geom_pos[g],
+            quat=model.geom_quat[g],
+            contype=bits[0],
+            conaffinity=bits[1],
+            mass=0.0,
+        )
 
 
 def _left_out(model: mujoco.MjModel) -> Iterator[tuple[str, str]]:

@@ -1,10 +1,11 @@
 """How near an arm comes to what stands around it: floor, cradle, UAV and its own links, by MuJoCo's distances.
 
-| arm | what it is measured by |
+| solid | what it is measured by |
 |---|---|
-| all links | the shapes that its file means for contact, or those that stand for links without any |
+| all links | the shapes that their file means for contact, else those that it draws, else what stands for a link without any |
 | outer half, links without shapes | capsules from joint to joint as well, which is what the plant lets touch |
-| tool | a capsule around sensor, magnet and camera |
+| tool | a capsule around sensor, magnet and camera; the sensor as it is drawn |
+| UAV | what its file draws, skids, marker, and beams between the rotors, which is what the plant lets touch |
 
 The scene is the planner's own and knows nothing of the plant's: cradle and UAV are put where a plan wants them.
 """
@@ -14,17 +15,15 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
-from armland.models.airframe.rotor_set import beams
+from armland.models.airframe.solids import OWN, add_cradle, add_links, add_tool, add_uav
 from armland.models.arm_file.spec import SHAPE
 from armland.models.arm_file.strength import poses
-from armland.models.description import compile_spec
-from armland.models.parameters import arm_spec, rotor_set, uav_parameters
+from armland.models.description import EE_SITE, compile_spec
+from armland.models.parameters import arm_spec, uav_parameters
 from armland.rotations import Array
 from armland.scenario import Scenario
-
-LINK_RADIUS_M, TOOL_RADIUS_M, BEAM_RADIUS_M = 0.06, 0.03, 0.015
-"""Of the capsules along the links, around the tool, and of the beams that carry the rotors."""
 
 FLOOR_M, CRADLE_M, UAV_M = 0.01, 0.01, 0.01
 """Clearance of the arm to floor, cradle and UAV. To the cradle it is less than `control.approach.clearance_m`, which the corridor of
@@ -70,9 +69,10 @@ class Obstacles:
         """
         spec = arm_spec(scenario)
         bare = compile_spec(spec, "the arm")
-        links = [g.name for g in spec.geoms if g.name.startswith(SHAPE)]
-        links += [*_add_links(spec, bare), _add_tool(spec, scenario)]
-        uav, cradle = _add_uav(spec, scenario), _add_cradle(spec, scenario)
+        solid = [g.name for g in spec.geoms if g.name.startswith(SHAPE)]
+        own = add_tool(spec, scenario)
+        links = [*solid, *add_links(spec, bare), *own]
+        uav, cradle = add_uav(spec, scenario), add_cradle(spec, scenario)
         spec.worldbody.add_geom(
             name="floor", type=mujoco.mjtGeom.mjGEOM_BOX, size=[9.0, 9.0, 0.5], pos=[0.0, 0.0, -0.5]
         )
@@ -88,7 +88,9 @@ class Obstacles:
             "the cradle": (cradle, CRADLE_M),
             "the UAV": (uav, UAV_M),
         }
-        self._pairs = self._outside(links, others) + self._inside([n for n in links if n.startswith(SHAPE)])
+        self._pairs = self._outside(links, others) + self._inside([*solid, *own])
+        self._ends, self._clearance = _ends(self._pairs), np.array([p.clearance for p in self._pairs])
+        self._size = self._sizes(self._ends)
 
     def put_cradle(self, put_down: Array, heading_deg: float) -> None:
         """Put the cradle where the UAV stands on it with its pivot at `put_down` (3,), m, D, its rails along the heading."""
@@ -105,25 +107,56 @@ class Obstacles:
         self._data.qpos[: self._joints] = q
         self._data.mocap_pos[self._model.body("uav").mocapid[0]] = pivot - self.lever
         mujoco.mj_kinematics(self._model, self._data)
-        best = Near(FAR_M, "", "", 0.0)
-        for i, pair in enumerate(self._pairs):
-            kept = max(pair.clearance - slack, 0.0)
-            most = max(best.room + kept, TOUCH_M)
-            room = mujoco.mj_geomDistance(self._model, self._data, pair.one, pair.two, most, None) - kept
+        best, kept = Near(FAR_M, "", "", 0.0), np.maximum(self._clearance - slack, 0.0)
+        # The nearest by their spheres are measured first, and most never.
+        least = self._apart(self._ends) - self._size - kept
+        near = np.flatnonzero(least < FAR_M)
+        for i in near[np.argsort(least[near], kind="stable")].tolist():
+            if least[i] >= best.room or (any_will_do and best.room < 0.0):
+                break
+            pair, most = self._pairs[i], max(best.room + kept[i], TOUCH_M)
+            room = mujoco.mj_geomDistance(self._model, self._data, pair.one, pair.two, most, None) - kept[i]
             if room < best.room - TOUCH_M:
-                best = Near(room, pair.link, pair.other, kept)
-                if any_will_do and room < 0.0:
-                    # What is too near here is most likely so next door.
-                    self._pairs.insert(0, self._pairs.pop(i))
-                    break
+                best = Near(float(room), pair.link, pair.other, float(kept[i]))
+        return best
+
+    def _apart(self, ends: NDArray[np.int64]) -> Array:
+        # Distances of the middles of shapes, m. Less `_sizes` they are those of the spheres around them: the shapes are no nearer.
+        step = self._data.geom_xpos[ends[0]] - self._data.geom_xpos[ends[1]]
+        return np.asarray(np.sqrt(np.einsum("ij,ij->i", step, step)))
+
+    def _sizes(self, ends: NDArray[np.int64]) -> Array:
+        return np.asarray(self._model.geom_rbound[ends].sum(axis=0))
+
+    def held(self) -> Near:
+        """The tightest place between what does not move against the tool and a UAV that it holds: the same in all poses."""
+        model, data, end = self._model, self._data, self._model.body("armland_tool").weldid[0]
+        uav, best = self._model.body("uav").mocapid[0], Near(FAR_M, "", "", 0.0)
+        mujoco.mj_kinematics(model, data)
+        there = data.site(EE_SITE)
+        data.mocap_pos[uav] = there.xpos - there.xmat.reshape(3, 3) @ self.lever
+        mujoco.mju_mat2Quat(data.mocap_quat[uav], there.xmat)
+        mujoco.mj_kinematics(model, data)
+        for pair in self._pairs:
+            body = model.geom_bodyid[pair.one]
+            if (
+                pair.other != "the UAV"
+                or model.body_weldid[body] != end
+                or not model.geom(pair.one).name.startswith(SHAPE)
+            ):
+                continue
+            room = mujoco.mj_geomDistance(model, data, pair.one, pair.two, FAR_M, None) - pair.clearance
+            if room < best.room:
+                best = Near(room, pair.link, pair.other, pair.clearance)
+        data.mocap_quat[uav] = [1.0, 0.0, 0.0, 0.0]
         return best
 
     def _outside(self, links: list[str], others: dict[str, tuple[list[str], float]]) -> list[_Pair]:
-        # What stands still, as the arm's base, meets nothing; nor does the tool meet what it grips.
+        # What stands still, as the arm's base, meets no floor; nor does the tool meet what it grips.
         model, pairs = self._model, []
         moving = [n for n in links if model.body_weldid[model.geom(n).bodyid[0]] != 0]
         for what, (names, clearance) in others.items():
-            for link in moving:
+            for link in moving if what == "the floor" else links:
                 if what == "the UAV" and link == "tool":
                     continue
                 for name in names:
@@ -144,12 +177,14 @@ class Obstacles:
     def _free(self, pairs: list[_Pair]) -> list[_Pair]:
         # Without those that are built into each other, or whose distance no joint changes: a plan can do nothing about them.
         samples = poses(self._model)[:SAMPLED]
-        far = np.empty((len(samples), len(pairs)))
+        far, ends = np.full((len(samples), len(pairs)), SAME_M), _ends(pairs)
+        size = self._sizes(ends)
         self.put_cradle(np.array([0.0, 0.0, 99.0]), 0.0)
         for row, q in zip(far, samples, strict=True):
             self._data.qpos[:] = q
             mujoco.mj_kinematics(self._model, self._data)
-            for i, pair in enumerate(pairs):
+            for i in np.flatnonzero(self._apart(ends) - size < SAME_M):
+                pair = pairs[i]
                 row[i] = mujoco.mj_geomDistance(self._model, self._data, pair.one, pair.two, SAME_M, None)
         always, same = (far < 0.0).mean(axis=0) > ALWAYS, (np.ptp(far, axis=0) < TOUCH_M) & (far[0] < SAME_M)
         # No clearance is kept that no pose has, as of a shoulder to the floor that its arm stands on.
@@ -166,67 +201,14 @@ class Obstacles:
         return count
 
     def _label(self, name: str) -> str:
-        if name == "tool":
-            return "the tool"
+        if name in OWN:
+            return f"the {name}"
         body = int(self._model.geom(name).bodyid[0])
-        name = self._model.body(body).name.removeprefix("arm/")
-        return name if name.startswith("link") else f"link {name}"
+        part, link = name.partition(":")[2], self._model.body(body).name.removeprefix("arm/")
+        if part not in ("", link):
+            return f"{part!r} on link {link!r}"
+        return link if link.startswith("link") else f"link {link}"
 
 
-def _add_links(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[str]:
-    data, names = mujoco.MjData(model), []
-    mujoco.mj_kinematics(model, data)
-    shaped = {int(model.geom_bodyid[i]) for i in range(model.ngeom) if model.geom(i).name.startswith(SHAPE)}
-    for i in range(model.njnt - 1):
-        body = int(model.jnt_bodyid[i])
-        if i < model.njnt // 2 and body in shaped:
-            continue
-        ends = (data.xanchor[[i, i + 1]] - data.xpos[body]) @ data.xmat[body].reshape(3, 3)
-        if np.linalg.norm(ends[1] - ends[0]) < 2.0 * LINK_RADIUS_M:
-            ends = ends.mean(axis=0) + np.array([[0.0, 0.0, -1e-4], [0.0, 0.0, 1e-4]])
-        names.append(f"along_{i + 1}")
-        _add_capsule(spec.joint(model.joint(i).name).parent, ends, LINK_RADIUS_M, names[-1])
-    return names
-
-
-def _add_tool(spec: mujoco.MjSpec, scenario: Scenario) -> str:
-    tool = scenario.tool
-    top = tool.length_m - tool.sensor_length_m - scenario.plate.drop_m - TOOL_RADIUS_M
-    ends = np.array([[0.0, 0.0, -tool.sensor_length_m], [0.0, 0.0, top]])
-    _add_capsule(spec.body("armland_tool"), ends, TOOL_RADIUS_M, "tool")
-    return "tool"
-
-
-def _add_uav(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:
-    # Its origin is the centre of mass, as in its file.
-    skids, body = scenario.skids, spec.worldbody.add_body(name="uav", mocap=True)
-    carriers, y = beams(rotor_set(scenario).place), np.array([0.0, skids.half_length_m, 0.0])
-    for i, ends in enumerate(carriers):
-        _add_capsule(body, np.array(ends), BEAM_RADIUS_M, f"beam_{i}")
-    for i, x in enumerate((skids.x_m, -skids.x_m)):
-        middle = np.array([x, 0.0, skids.z_m])
-        _add_capsule(body, np.array([middle - y, middle + y]), skids.radius_m, f"skid_{i}")
-    return [*(f"beam_{i}" for i in range(len(carriers))), "skid_0", "skid_1"]
-
-
-def _add_cradle(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:
-    # Its origin is the middle of the slot at the rails' upper edge; the legs reach through the floor.
-    c, body, names = scenario.cradle, spec.worldbody.add_body(name="cradle", mocap=True), []
-    x, across, z = 0.5 * c.length_m, 0.5 * c.gap_m + c.radius_m, -c.radius_m
-    for side in (-1.0, 1.0):
-        y = side * across
-        names += [f"rail{side:+.0f}", f"leg{side:+.0f}a", f"leg{side:+.0f}b"]
-        _add_capsule(body, np.array([[-x, y, z], [x, y, z]]), c.radius_m, names[-3])
-        for name, foot in zip(names[-2:], (-0.3 * x, 0.8 * x), strict=True):
-            leg = np.array([[foot, y, z], [foot, 1.5 * y, -LEG_M]])
-            _add_capsule(body, leg, 0.7 * c.radius_m, name)
-    return names
-
-
-LEG_M = 0.6
-"""Length of the cradle's legs below its rails: they lean outwards."""
-
-
-def _add_capsule(body: mujoco.MjsBody, ends: Array, radius: float, name: str) -> None:
-    kind = mujoco.mjtGeom.mjGEOM_CAPSULE
-    body.add_geom(name=name, type=kind, fromto=ends.ravel(), size=[radius, 0, 0], mass=0, contype=0, conaffinity=0)
+def _ends(pairs: list[_Pair]) -> NDArray[np.int64]:
+    return np.array([[p.one for p in pairs], [p.two for p in pairs]], np.int64)

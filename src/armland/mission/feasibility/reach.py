@@ -6,12 +6,16 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.control.laws.realisation import elbow_of
-from armland.errors import ConfigurationError, WorkspaceError
+from armland.errors import ConfigurationError, ModelError, MountingError, WorkspaceError
 from armland.mission.feasibility.obstacles import Obstacles
 from armland.mission.feasibility.way import Stop, check_clear, stops
 from armland.mission.table.mission import At, Mission
 from armland.mission.table.phases import Phase
 from armland.models.arm import ArmModel
+from armland.models.arm_file.reading import read_tree
+from armland.models.arm_file.tip import others
+from armland.models.description import resolve
+from armland.models.parameters import arm_file
 from armland.models.posture import UPRIGHT, check_path, home_poses, lead, pose
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -58,6 +62,7 @@ def survey(
     points = [point(at, scenario) for at in mission.points(scenario)]
     fine = np.concatenate([np.linspace(a, b, 20) for a, b in pairwise(points)])
     around = Obstacles(scenario) if obstacles is None else obstacles
+    check_beside(scenario, around)
     around.put_cradle(np.array(scenario.place.put_down_m), scenario.cradle.heading_deg)
     way = Way(scenario, mission, weight, fine, stops(fine[::CLEAR_EVERY], scenario, mission.start), around)
     best, widest, refusal = np.zeros(arm.joints), -np.inf, _Refusal(-1, WorkspaceError(""))
@@ -75,6 +80,44 @@ def survey(
     if widest < 0.0:
         raise refusal.error
     return best
+
+
+def check_beside(scenario: Scenario, around: Obstacles) -> None:
+    """Refuse an arm of which something that is fixed to its last link, as a gripper, is where the tool holds the UAV.
+
+    Raises:
+        MountingError: what it is, and another end effector of the file that works, if there is one.
+    """
+    near = around.held()
+    if near.room >= 0.0:
+        return
+    distance = 1e3 * (near.room + near.clearance)
+    how = f"{-distance:.0f} mm inside" if distance < 0.0 else f"within {distance:.0f} mm of"
+    tip = arm_file(scenario).chain.tip
+    # The same frame with another axis before other frames.
+    ends = sorted(others(read_tree(resolve(scenario.arm.file)), tip), key=lambda e: _frame(e) != _frame(tip.label))
+    found = next((e for e in ends if _clear(scenario, e)), None)
+    works = (
+        f"--ee '{found}' mounts the tool clear of it, and so does"
+        if found
+        else "what works is a frame at its outer end, or"
+    )
+    raise MountingError(
+        f"{near.link} is {how} the UAV in whatever pose the tool holds it: the tool ends {1e3 * scenario.tool.length_m:.0f} mm out "
+        f"from the end effector {tip.label!r}, and {1e3 * near.clearance:.0f} mm are kept; {works} a file without it",
+        found,
+    )
+
+
+def _frame(end: str) -> str:
+    return end.partition(":")[0]
+
+
+def _clear(scenario: Scenario, ee: str) -> bool:
+    try:
+        return Obstacles(scenario.replaced({"arm": {"ee": ee}})).held().room >= 0.0
+    except ModelError:
+        return False
 
 
 class Way(NamedTuple):

@@ -1,9 +1,10 @@
-"""A UAV that has no file, as the body that its numbers describe: inertia, sites, and shapes for the eye."""
+"""Bodies of UAVs: one that has no file, by its numbers; the skids that each gets; the shapes of which it is taken to be."""
 
 import mujoco
 import numpy as np
 
 from armland.errors import ModelError
+from armland.scenario.gear import Skids
 from armland.scenario.uav import Rotors, Uav
 
 BEAM, DARK, DISC = 0.006, [0.13, 0.14, 0.16, 1.0], [0.45, 0.5, 0.56, 0.22]
@@ -37,3 +38,22 @@ def described(uav: Uav, rotors: Rotors) -> mujoco.MjSpec:
     body.add_geom(type=sphere, size=[4.0 * thick, 0, 0], rgba=DARK, **look)
     body.add_geom(type=capsule, fromto=[0, 0, 0, *uav.lever_m], size=[0.5 * thick, 0, 0], rgba=DARK, **look)
     return spec
+
+
+def add_skids(body: mujoco.MjsBody, skids: Skids) -> None:
+    """Put two tubes on four legs below a UAV's centre of mass; they weigh nothing of their own."""
+    capsule, y, z = mujoco.mjtGeom.mjGEOM_CAPSULE, skids.half_length_m, skids.z_m
+    look = {"group": 2, "mass": 0, "rgba": [0.72, 0.74, 0.77, 1]}
+    for i, x in enumerate((skids.x_m, -skids.x_m)):
+        tube = {"fromto": [x, -y, z, x, y, z], "size": [skids.radius_m, 0, 0]}
+        body.add_geom(name=f"skid_{i + 1}", type=capsule, **tube, **look)
+        for side in (-1, 1):
+            leg = [0.75 * x, side * 0.09, 0.0, x, side * 0.6 * y, z]
+            body.add_geom(type=capsule, fromto=leg, size=[0.6 * skids.radius_m, 0, 0], **look)
+
+
+def drawn(model: mujoco.MjModel, body: int) -> list[int]:
+    """Geoms of a body that its file draws, meshes left out: what a UAV or a cradle is made of for whoever asks what touches it."""
+    first, mesh = int(model.body_geomadr[body]), int(mujoco.mjtGeom.mjGEOM_MESH)
+    geoms = range(first, first + int(model.body_geomnum[body]))
+    return [g for g in geoms if model.geom_group[g] == 2 and model.geom_type[g] < mesh]

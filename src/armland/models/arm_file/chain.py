@@ -182,7 +182,7 @@ def _link(tree: Tree, members: list[int], at: list[Pose], own: _Own) -> Link:
     name = bodies[own.body].name if own.body >= 0 else "base"
     if own.joints:
         _check_mass(tree, members, own)
-    shapes = tuple(s._replace(pose=at[m].then(s.pose)) for m in members for s in bodies[m].shapes)
+    shapes = tuple(s._replace(pose=at[m].then(s.pose), of=bodies[m].name) for m in members for s in bodies[m].shapes)
     return Link(name, own.pose, own.joints, lumped(parts), shapes)
 
 

@@ -15,7 +15,8 @@ PREFIX = "arm/"
 """Of every name that comes from the arm's file."""
 
 SHAPE = f"{PREFIX}shape_"
-"""Shapes that the file means for contact, or that stand for links without any: this and a number."""
+"""What the arm is touched at: the shapes of a link that its file means for contact, else those that it draws, else what stands for a
+link without any. This, a number, and after a colon the body of the file."""
 
 SEEN, HIDDEN = 2, 3
 """Groups of MuJoCo's shapes: drawn, and not drawn."""
@@ -46,20 +47,21 @@ def _add_link(spec: mujoco.MjSpec, parent: mujoco.MjsBody, link: Link) -> mujoco
         i = link.inertial
         body.mass, body.ipos, body.iquat, body.inertia = i.mass, i.pos, i.quat, i.moments
         body.explicitinertial = True
-    painted = any(not s.touches for s in link.shapes)
+    painted, meant = (any(s.touches is way for s in link.shapes) for way in (False, True))
     for shape in link.shapes:
-        _add_shape(spec, body, shape, HIDDEN if shape.touches and painted else SEEN)
+        name = f"{SHAPE}{len(spec.geoms)}:{shape.of}" if shape.touches or not meant else ""
+        _add_shape(spec, body, shape, name, HIDDEN if shape.touches and painted else SEEN)
     return body
 
 
-def _add_shape(spec: mujoco.MjSpec, body: mujoco.MjsBody, shape: Shape, group: int) -> None:
+def _add_shape(spec: mujoco.MjSpec, body: mujoco.MjsBody, shape: Shape, name: str, group: int) -> None:
     count = len(spec.materials)
     material = next((m.name for m in spec.materials if _looks(m, shape)), None)
     if material is None:
         material = f"{PREFIX}{count}"
         spec.add_material(name=material, rgba=shape.rgba, specular=shape.gloss[0], shininess=shape.gloss[1])
     body.add_geom(
-        name=f"{SHAPE}{len(spec.geoms)}" if shape.touches else "",
+        name=name,
         type=getattr(mujoco.mjtGeom, f"mjGEOM_{shape.kind.upper()}"),
         size=shape.size,
         pos=shape.pose.pos,

@@ -4,6 +4,7 @@ An end effector is asked for as `FRAME`, or as `FRAME:AXIS` where another axis t
 """
 
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import mujoco
@@ -94,6 +95,18 @@ def hinges(tree: Tree, body: int) -> int:
     return sum(j.driven and not FINGER.search(j.name) for b in tree.way(body) for j in tree.bodies[b].joints)
 
 
+def others(tree: Tree, end: Tip) -> Iterator[str]:
+    """Frames that the same joints move as `end`, as they are asked for with the axis that points out."""
+
+    def movers(body: int) -> list[str]:
+        return [j.name for b in tree.way(body) for j in tree.bodies[b].joints if j.driven and not FINGER.search(j.name)]
+
+    for frame in tree.frames:
+        axis = outward(tree, frame)
+        if axis is not None and movers(frame.body) == movers(end.body):
+            yield frame.name if axis == "z" else f"{frame.name}:{axis}"
+
+
 def _plain(tree: Tree) -> Frame:
     behind = [f for f in tree.frames if hinges(tree, f.body) >= NEEDED]
     if not behind:
@@ -137,14 +150,15 @@ def _ends(tree: Tree) -> list[int]:
 
 
 def last_joint(tree: Tree, body: int) -> tuple[Array, Array, Array] | None:
-    """Axis (3,) and anchor (3,) m of the last joint before `body`, and the anchor (3,) of the one before that, in the frame of `body`.
+    """Axis (3,) and anchor (3,) m of the last joint before `body` that is no gripper's, and the anchor (3,) of the one before that, in
+    the frame of `body`.
 
     None where there are not two. The joints stand where the file's poses have them.
     """
     at, found = here(), []
     for b in reversed(tree.way(body)):
         for joint in reversed(tree.bodies[b].joints):
-            if joint.driven:
+            if joint.driven and not FINGER.search(joint.name):
                 back = at.inverse()
                 R = matrix(back.quat)
                 found.append((R @ joint.axis, back.pos + R @ joint.pos))

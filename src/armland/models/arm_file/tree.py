@@ -97,6 +97,7 @@ class Shape(NamedTuple):
     rgba: Array  # (4,)
     gloss: tuple[float, float] = (0.5, 0.5)  # specular, shininess
     touches: bool = True  # whether the file means it for contact
+    of: str = ""  # body of the file that it belongs to
 
 
 class Body(NamedTuple):

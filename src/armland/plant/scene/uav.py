@@ -6,6 +6,7 @@ The UAV's file holds a body `uav` whose origin is its centre of mass, and sites 
 import mujoco
 import numpy as np
 
+from armland.models.airframe.body import add_skids
 from armland.models.airframe.rotor_set import beams
 from armland.models.description import EE_SITE
 from armland.models.parameters import STEEL_KGM3, rotor_set, uav_file, uav_parameters
@@ -13,7 +14,7 @@ from armland.plant.scene.arm import add_capsule
 from armland.rotations import Array
 from armland.scenario import Scenario
 from armland.scenario.deviation import ranges
-from armland.scenario.gear import Hinge, Plate, Skids
+from armland.scenario.gear import Hinge, Plate
 
 UAV = "uav/"
 """Prefix of the UAV's names in the scene."""
@@ -89,7 +90,7 @@ def let_fly(spec: mujoco.MjSpec, uav: mujoco.MjSpec, scenario: Scenario) -> mujo
     cm = site(uav, "cm").pos
     for i, (one, other) in enumerate(beams(rotor_set(scenario).place)):
         add_capsule(body, f"frame_{i + 1}", [*(cm + one), *(cm + other)], FRAME_RADIUS_M)
-    _add_skids(body, scenario.skids)
+    add_skids(body, scenario.skids)
     plate = body.add_body(name="plate", pos=site(uav, "pivot").pos.copy())
     if "hinge.play_m" in ranges(scenario.deviation):
         plate.add_joint(
@@ -160,14 +161,3 @@ def _hang_plate(plate: mujoco.MjsBody, p: Plate, hinge: Hinge, degree: bool) -> 
     plate.add_geom(type=cylinder, fromto=stem, size=[0.005, 0, 0], rgba=metal, group=2, mass=0)
     plate.add_site(name="hinge")
     plate.add_site(name="plate", pos=[0, 0, -p.drop_m])
-
-
-def _add_skids(body: mujoco.MjsBody, skids: Skids) -> None:
-    capsule, y, z = mujoco.mjtGeom.mjGEOM_CAPSULE, skids.half_length_m, skids.z_m
-    look = {"group": 2, "mass": 0, "rgba": [0.72, 0.74, 0.77, 1]}
-    for i, x in enumerate((skids.x_m, -skids.x_m)):
-        tube = {"fromto": [x, -y, z, x, y, z], "size": [skids.radius_m, 0, 0]}
-        body.add_geom(name=f"skid_{i + 1}", type=capsule, **tube, **look)
-        for side in (-1, 1):
-            leg = [0.75 * x, side * 0.09, 0.0, x, side * 0.6 * y, z]
-            body.add_geom(type=capsule, fromto=leg, size=[0.6 * skids.radius_m, 0, 0], **look)
