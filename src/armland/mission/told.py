@@ -16,7 +16,7 @@ from armland.estimation.plate.layouts import FELT_S
 from armland.mission.belief import Flyer
 from armland.mission.board import board_layout
 from armland.mission.feasibility.launch import Launch
-from armland.mission.feasibility.room import room
+from armland.mission.feasibility.path import room
 from armland.mission.feasibility.weight import hover_max
 from armland.mission.reference import view
 from armland.mission.reference.guided import SEEN_S

@@ -52,7 +52,7 @@ class Wind(NamedTuple):
         return SINKING / TURBULENCE * self.sigma
 
     def lean(self, slope: float, k: float) -> float:
-        """Lean, rad, in such a gust of a UAV whose drag over its weight is `slope`, s/m."""
+        """Lean, rad, in a gust of `k` standard deviations of a UAV whose drag over its weight is `slope`, s/m."""
         return float(np.arctan(slope * self.gust(k)))
 
 

@@ -39,8 +39,8 @@ def arm(**given: Any) -> None:
     """Say what is read from an arm's file, from where each value comes, what the arm can carry, and what is suspicious."""
     from armland.control.laws.realisation import elbow_of
     from armland.models.arm_file.checks import suspicious
+    from armland.models.arm_file.survey import survey
     from armland.models.arm_file.words import lines
-    from armland.models.arm_survey import survey
     from armland.models.parameters import arm_file, arm_model
     from armland.view.tables.arm import arm_data, print_arm
 

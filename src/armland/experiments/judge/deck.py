@@ -1,10 +1,13 @@
 """A flight as the deck sees it: what is judged at sea is motion against the deck, as a touchdown, a catch, a rest are."""
 
+from collections.abc import Mapping
+from typing import overload
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from armland.experiments.judge.brief import Ticks
-from armland.rotations import Array
+from armland.records import Records
 
 PLACES = {"r": "v", "r_cm": "v_cm", "ee": "ee_v"}
 """Positions in W and their velocities."""
@@ -12,9 +15,17 @@ PLACES = {"r": "v", "r_cm": "v_cm", "ee": "ee_v"}
 FORCES = ("hinge_force", "cradle_force")
 
 
+@overload
+def seen_from_deck(ticks: Mapping[str, Records]) -> Mapping[str, Records]: ...
+
+
+@overload
+def seen_from_deck(ticks: Ticks) -> Ticks: ...
+
+
 def seen_from_deck(ticks: Ticks) -> Ticks:
     """The ticks with their truth in D, and velocities against the deck; on land as they are."""
-    truth = ticks["truth"]
+    truth: Records = ticks["truth"]
     if "deck_quat" not in (truth.dtype.names or ()) or not _moves(truth):
         return ticks
     own, R = truth.copy(), Rotation.from_quat(truth["deck_quat"], scalar_first=True)
@@ -29,7 +40,7 @@ def seen_from_deck(ticks: Ticks) -> Ticks:
     for name in FORCES:
         own[name] = back.apply(truth[name])
     names = ticks.dtype.names if isinstance(ticks, np.ndarray) else tuple(ticks)
-    return {**{name: ticks[name] for name in names}, "truth": own}
+    return {**{name: ticks[name] for name in names or ()}, "truth": own}
 
 
 def deck_speed(truth: np.ndarray) -> float:
@@ -39,5 +50,5 @@ def deck_speed(truth: np.ndarray) -> float:
     return float(np.linalg.norm(truth["deck_v"], axis=1).max())
 
 
-def _moves(truth: Array) -> bool:
+def _moves(truth: Records) -> bool:
     return bool(truth["deck"].any() or truth["deck_quat"][:, 1:].any())

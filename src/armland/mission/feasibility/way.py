@@ -17,7 +17,7 @@ import numpy as np
 from armland.control.laws.realisation import elbow_of
 from armland.errors import WorkspaceError
 from armland.mission.feasibility.obstacles import Near, Obstacles
-from armland.mission.feasibility.room import room
+from armland.mission.feasibility.path import room
 from armland.mission.table.mission import Start
 from armland.models.arm import ArmModel
 from armland.models.nearby import Sinking, body_of, sink

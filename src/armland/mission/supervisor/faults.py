@@ -101,10 +101,7 @@ def watch_layout() -> np.dtype:
             ("hinge_max", "f8"),  # N
             ("tilt_max", "f8"),  # rad
             ("thrust_max", "f8"),  # N, largest thrust that is commanded
-            (
-                "plunges",
-                "f8",
-            ),  # m/s, speed of sinking with more thrust than should carry it, of a UAV whose rotors give too little
+            ("plunges", "f8"),  # m/s, at which a UAV sinks whose rotors give too little
             ("hover_max", "f8"),  # N, command beyond which a UAV cannot hover safely
             ("joint_margin", "f8"),  # rad
             ("sigma_min", "f8"),

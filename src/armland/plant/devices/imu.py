@@ -59,7 +59,7 @@ def sample(k: int, told: Record, kept: Record, noise: Array, shaken: Array, t: R
         told: of `told_layout`.
         kept: of `kept_layout`, written.
         noise: standard normal numbers (6,).
-        shaken: likewise (3,), of the specific force.
+        shaken: standard normal numbers (3,), of the specific force.
         t: truth, of which `quat`, `omega` and `v_cm` are read.
     """
     if k % told.period:

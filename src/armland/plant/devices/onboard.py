@@ -206,11 +206,10 @@ def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float, t
         for i in range(3):
             s.anchor[i] = t.r_cm[i] + (climb if i == 2 else 0.0)
     s.heading = _near(s.heading, 2.0 * np.arctan2(quat[3], quat[0]))
-    own = 2.0 * np.arctan2(bias[3], bias[0])
-    c, d, e = np.cos(own), np.sin(own), np.empty(3)
+    own, e, v, still = 2.0 * np.arctan2(bias[3], bias[0]), np.empty(3), np.empty(3), np.zeros(3)
+    c, d, fresh = np.cos(own), np.sin(own), np.sqrt(1.0 - p.speed_hold**2)
     for i in range(3):
         e[i] = (s.anchor[i] + kept.faults.away[i]) - (t.r_cm[i] + p.hover_noise * noise[i])
-    v, still, fresh = np.empty(3), np.zeros(3), np.sqrt(1.0 - p.speed_hold**2)
     for i in range(3):
         s.speed_error[i] = p.speed_hold * s.speed_error[i] + p.speed_sigma * fresh * speed[i]
         v[i] = t.v_cm[i] + p.speed_bias[i] + s.speed_error[i]

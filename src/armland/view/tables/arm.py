@@ -6,9 +6,9 @@ import numpy as np
 from rich.text import Text
 
 from armland.models.arm_file.reading import ArmFile
+from armland.models.arm_file.survey import Survey
 from armland.models.arm_file.table import FIELDS, Row, unit
 from armland.models.arm_file.tree import Value
-from armland.models.arm_survey import Survey
 from armland.view.tables.verdicts import print_lines, terminal, titled
 
 LEGEND = (

@@ -6,7 +6,7 @@ import pytest
 
 from armland.models.arm import ArmModel
 from armland.models.arm_file import strength
-from armland.models.arm_survey import SHARE, survey
+from armland.models.arm_file.survey import SHARE, survey
 from armland.models.description import ASSETS
 
 
@@ -57,4 +57,4 @@ def test_arm_that_cannot_hold_itself_carries_nothing(arms_folder):
 def arms_folder():
     from pathlib import Path
 
-    return Path(__file__).parents[1] / "data" / "arms"
+    return Path(__file__).parents[2] / "data" / "arms"
