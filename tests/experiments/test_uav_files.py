@@ -46,7 +46,7 @@ def test_arm_of_its_class_lands_a_uav_of_25_kg():
 @pytest.mark.slow
 @pytest.mark.parametrize(("uav", "arm"), [("crazyflie", None), ("octo25", str(ARMS / "heavy.xml"))])
 def test_lightest_and_heaviest_take_off(uav, arm):
-    """The arm's own stop is above the one's threshold of contact; the other leaves three tools' weights on the sensor until it rises."""
+    """The arm's own stop is above the one's threshold of contact; the other leaves three tools' weights on the sensor."""
     given = {"uav": uav, "arm": arm, "ee": None, "deviation": "published"}
     result = fly(load("landing", given), "takeoff", 501).result
     assert result["success"], result["reason"]
