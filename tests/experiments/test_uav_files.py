@@ -43,6 +43,15 @@ def test_arm_of_its_class_lands_a_uav_of_25_kg():
     assert result["success"], result["reason"]
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("uav", "arm"), [("crazyflie", None), ("octo25", str(ARMS / "heavy.xml"))])
+def test_lightest_and_heaviest_take_off(uav, arm):
+    """The arm's own stop is above the one's threshold of contact; the other leaves three tools' weights on the sensor."""
+    given = {"uav": uav, "arm": arm, "ee": None, "deviation": "published"}
+    result = fly(load("landing", given), "takeoff", 501).result
+    assert result["success"], result["reason"]
+
+
 def test_three_rotors_are_refused_before_anything_moves():
     with pytest.raises(ModelError, match=r"3 rotors make 3 of the four independently"):
         prepare(load_scenario(UAVS / "tri.toml"), "landing", 1)

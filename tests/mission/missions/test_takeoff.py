@@ -59,6 +59,14 @@ def test_magnet_is_on_from_the_touch_until_the_hinge_is_free_of_force():
     assert on == names[names.index("touch") : names.index("hand_back") + 1]
 
 
+def test_contact_counts_from_half_of_the_stroke_on_which_lies_before_the_plate():
+    """The septic is half-way at half its time; a camera that errs by 5 mm does not bring the plate nearer than that."""
+    (guard,), scenario = PLAIN["touch"].guards, load_scenario("landing")
+    assert {c.signal: c.threshold for c in guard.conditions} == {"contact": "half", "progress": "half"}
+    standoff, beyond = scenario.place.standoff_m, scenario.control.approach.beyond_m
+    assert 0.5 * (standoff + beyond) < standoff - 0.005
+
+
 def test_rotors_turn_only_once_the_uav_is_gripped():
     names = [p.name for p in UNDER_WAY]
     off = [p.name for p in UNDER_WAY if p.uav == "off"]

@@ -42,3 +42,5 @@ def test_differences_between_file_and_belief_are_said():
     assert differs(of()) == []
     (line,) = differs(of(belief={"uav": {"mass_kg": 0.4}}))
     assert line == "its file says 0.48 kg, believed are 0.4 kg; the arm weighs it once it hangs there"
+    (line,) = differs(of(belief={"rotors": {"max_thrust_n": 1.5}}))
+    assert line.startswith("a rotor gives up to 1.86 N, believed are 1.5 N")

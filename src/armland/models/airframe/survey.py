@@ -103,8 +103,9 @@ def _of_inertia(body: UavParameters, rotors: RotorSet) -> list[str]:
 
 
 def differs(scenario: Scenario) -> list[str]:
-    """Where what flies and what is believed of it differ in mass, inertia or lever, a line each: for before anything moves."""
-    real, believed = uav_parameters(scenario), uav_parameters(scenario.believed())
+    """Where what flies and what is believed of it differ in mass, inertia, lever or thrust, a line each: for before anything moves."""
+    belief = scenario.believed()
+    real, believed = uav_parameters(scenario), uav_parameters(belief)
     out = []
     if not np.isclose(real.mass, believed.mass, rtol=1e-6):
         out.append(
@@ -115,6 +116,11 @@ def differs(scenario: Scenario) -> list[str]:
         out.append(f"its file says inertias of {_row(one)} kg·m², believed are {_row(other)}")
     if not np.allclose(real.lever, believed.lever, atol=1e-6):
         out.append(f"its file has the pivot at {_row(real.lever)} m, believed is {_row(believed.lever)}")
+    most, thought = scenario.rotors.max_thrust_n, belief.rotors.max_thrust_n
+    if not np.isclose(most, thought, rtol=1e-6):
+        out.append(
+            f"a rotor gives up to {most:g} N, believed are {thought:g} N: by that it is judged whether it can fly"
+        )
     return out
 
 
