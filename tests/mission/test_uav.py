@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from armland.estimation.plate.layouts import FELT_S
 from armland.mission.reference.guided import CAUGHT_S
 from armland.mission.table.phases import LINK, UAV
+from armland.mission.told import ASTRAY_M
 from armland.mission.uav import LEANT_MPS2, RECKONED_S, command_uav
 from armland.records import UavMode
 from armland.rotations import from_rotation_vector, matrix, multiply
@@ -67,6 +69,20 @@ def test_uav_that_nobody_vouches_for_hovers_by_itself(bench):
     bench.kept["estimate"]["seen"] = 1
     ask(bench, "guide")
     assert bench.c["uav_mode"][0] == UavMode.GUIDED
+
+
+@pytest.mark.parametrize(
+    ("age", "sigma", "mode"), [(1.9, 0.14, "GUIDED"), (1.9, 0.16, "AUTONOMOUS"), (2.1, 0.01, "AUTONOMOUS")]
+)
+def test_in_wind_a_uav_out_of_view_is_guided_for_as_long_as_it_is_known_where_it_is(bench, age, sigma, mode):
+    """Negative control: without a forecast it is left to its own hover at that age."""
+    p = bench.told["act"]["uav"]
+    bench.e["plate"][0], bench.e["plate_age"], bench.kept["estimate"]["plate"]["sigma_position"] = 0.8, age, sigma
+    ask(bench, "guide")
+    assert bench.c["uav_mode"][0] == UavMode.AUTONOMOUS
+    p["reckoned"], p["astray"] = FELT_S, ASTRAY_M
+    ask(bench, "guide")
+    assert bench.c["uav_mode"][0] == getattr(UavMode, mode)
 
 
 def test_uav_that_has_left_the_view_is_told_where_to_hover_in_its_own_axes(bench):

@@ -16,9 +16,9 @@ from armland.mission.feasibility.pace import paced
 from armland.mission.feasibility.path import survey_path
 from armland.mission.feasibility.reach import survey, targets
 from armland.mission.feasibility.touchdown import gently
-from armland.mission.feasibility.weather import judged, weathered
 from armland.mission.feasibility.weight import check_hinged_thrust, check_weight, flies_on
 from armland.mission.missions.takeoff import gives_speed
+from armland.mission.missions.weather import judged, weathered
 from armland.mission.reference.path import Leg
 from armland.mission.registry import mission_named
 from armland.mission.supervisor.table import debounce_ticks, fault_rows

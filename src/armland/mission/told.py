@@ -25,9 +25,9 @@ from armland.mission.table.mission import Start
 from armland.mission.uav import LEANT_MPS2, RECKONED_S
 from armland.models.airframe.lift import lift_range
 from armland.models.airframe.slope import tell_slope
+from armland.models.airframe.weather import GUST, STRONGEST, expected
 from armland.models.arm import ArmModel
 from armland.models.parameters import rotor_count
-from armland.models.weather import GUST, STRONGEST, expected
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -48,6 +48,10 @@ of its reach, against 0.6 m/s of the wrist alone and 0.3 m/s of the arm without 
 
 COMING_MPS2 = 3.0
 """Largest acceleration of the UAV that is carried on over the uplink's delay: what its largest tilt makes."""
+
+ASTRAY_M = 0.15
+"""Standard deviation beyond which a UAV that is reckoned in wind is left to its own hover: until its accelerometers' bias is known
+that is soon."""
 
 FELT = 2.0
 """Of the strongest gust's acceleration: what the UAV's accelerometers may feel beyond the model. The arm pulls as hard."""
@@ -165,7 +169,7 @@ def _decide(p: Records, t: Telling) -> None:
     # One that flies on with all its thrust need not hover.
     watch["plunges"] = PLUNGES_MPS + expected(s).sinking
     watch["thrust_max"] = s.control.thrust.ceiling * static
-    watch["hover_max"] = np.inf if s.place.fly_on else hover_max(s)
+    watch["hover_max"] = np.inf if s.place.fly_on else hover_max(s, expected(s).mean > 0.0)
     watch["joint_margin"], watch["sigma_min"] = limits.joint_margin_rad, limits.sigma_min
     watch["speed_share"] = limits.joint_speed_share
 
@@ -212,6 +216,7 @@ def _uav(p: Records, t: Telling) -> None:
     p["speed_max"], p["integral_max"] = station.speed_max_mps, station.integral_max_mps2
     wind, drag = expected(s), s.uav.drag_nspm / t.flyer.mass
     p["reckoned"], p["fades"] = (FELT_S, FELT_S) if wind.mean > 0.0 else (RECKONED_S, SEEN_S)
+    p["astray"] = ASTRAY_M if wind.mean > 0.0 else np.inf
     p["leant"] = max(LEANT_MPS2, drag * wind.gust(STRONGEST))
     p["coming_max"], p["vertical"] = COMING_MPS2, station.vertical
     p["tilt_max"], p["gust_share"], p["gust_max"] = station.tilt_max_rad, station.gust_share, station.gust_max_mps2

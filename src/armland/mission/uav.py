@@ -79,6 +79,7 @@ def told_layout() -> np.dtype:
             ("integral_max", "f8"),  # m/s²
             ("tilt_max", "f8"),  # rad
             ("reckoned", "f8"),  # s, for which the station is kept by reckoning alone
+            ("astray", "f8"),  # m, standard deviation of the reckoned place beyond which it is not kept
             ("fades", "f8"),  # s, age of the newest image from which on the gust that it showed is forgotten
             ("leant", "f8"),  # m/s², largest horizontal acceleration that a UAV on the hinge holds against by leaning
             ("gust_share", "f8"),  # of the disturbance in the plate filter
@@ -102,7 +103,8 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     p, s, what = b.told.act.uav, b.kept.act, row.uav
     c.uav_mode = MODES[row.link]
     learn_trim(b)
-    unseen = b.kept.estimate.seen == 0 or e.plate_age > p.reckoned
+    sigma = b.kept.estimate.plate.sigma_position
+    unseen = b.kept.estimate.seen == 0 or e.plate_age > p.reckoned or max(sigma[0], sigma[1], sigma[2]) > p.astray
     blind = unseen and (what == STATION or (what == CRUISE and not p.fly_on))
     if what == AUTONOMOUS or blind:
         c.uav_mode = MODE_AUTONOMOUS

@@ -78,7 +78,7 @@ class Forecast(Section):
 
 
 class Air(Section):
-    """Wind, of which the controller is told nothing. Its heights are above ground or sea."""
+    """Wind, of which the controller knows what the user foretells. Its heights are above ground or sea."""
 
     wind_mps: Annotated[float, between(0.0, 40.0)] = key(0.0, "mean speed at reference_m")
     reference_m: Annotated[float, between(0.5, 300.0)] = key(

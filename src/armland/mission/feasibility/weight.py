@@ -13,10 +13,15 @@ HOVER_SHARE = 0.96
 """Of the largest lift that station keeping asks for, what may go into hovering: the rest stops a fall."""
 
 
-def hover_max(scenario: Scenario) -> float:
-    """Largest command, N, that may go into hovering: station keeping gives no more than leaves it its largest tilt."""
+def hover_max(scenario: Scenario, leans: bool = False) -> float:
+    """Largest command, N, that may go into hovering: station keeping gives no more than leaves it its largest tilt.
+
+    Args:
+        scenario: believed.
+        leans: whether it hovers leaning against wind, with that tilt in use and its command that of the lean.
+    """
     c, (_, most) = scenario.control, lift_range(scenario)
-    return HOVER_SHARE * c.thrust.ceiling * most * float(np.cos(c.station.tilt_max_rad))
+    return HOVER_SHARE * c.thrust.ceiling * most * (1.0 if leans else float(np.cos(c.station.tilt_max_rad)))
 
 
 def check_weight(scenario: Scenario, flyer: Flyer, flies_on: bool, trial: bool) -> None:

@@ -85,7 +85,7 @@ PHASES = (
 
 FIND = Phase(
     "find", kind="ground", arm="hold", uav="autonomous", free=True, seeks=True, timeout_s=20.0, on_timeout="refused"
-).to("self_test", "uav_seen > half, elapsed > settled_s")
+).to("self_test", "uav_seen > half, elapsed > settled_s", 0.2)
 """The UAV hovers by itself until the camera sees it."""
 
 
@@ -94,6 +94,8 @@ def _phases(scenario: Scenario) -> tuple[Phase, ...]:
     if not scenario.forecast.wind_mps:
         return PHASES
     first, *rest = PHASES
+    # What the rotors make of a command changes until the cradle is near.
+    rest = [p._replace(observe=True) if p.name == "set_down" else p for p in rest]
     return (FIND, first._replace(uav="station", seeks=True, timeout_s=20.0), *rest)
 
 

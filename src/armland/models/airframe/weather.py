@@ -31,7 +31,7 @@ GUST = 2.0
 STRONGEST = 3.0
 """Likewise of one that must not bring it to an end."""
 
-SPARE_RAD, MOST_RAD = 0.1, 0.52
+SPARE_RAD, MOST_RAD = 0.05, 0.52
 """Lean that is left to move the UAV while it holds against the strongest gust; largest that an autopilot of this kind is set to:
 AR.Drone, `euler_angle_max`."""
 

@@ -1,4 +1,4 @@
-"""Which limits of calm air give way where the user foretells wind, see `models.weather`: keys that he has not set, and criteria."""
+"""Which limits of calm air give way where the user foretells wind, see `models.airframe.weather`: keys that he has not set, and criteria."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from armland.mission.table.mission import Criterion, Mission
 from armland.models.airframe.sizing import at, is_settled, nested
-from armland.models.weather import GUST, MOST_RAD, SPARE_RAD, STRONGEST, expected
+from armland.models.airframe.weather import GUST, MOST_RAD, SPARE_RAD, STRONGEST, expected
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 
@@ -38,7 +38,7 @@ def weathered(scenario: Scenario, mass: float) -> Scenario:
     # N, of the lift of a UAV whose rotors carry it, in sinking air.
     sinks = LIFT * mass * g * wind.sinking
     wanted = {
-        "control.station.tilt_max_rad": min(strongest + 0.5 * SPARE_RAD, MOST_RAD),
+        "control.station.tilt_max_rad": min(strongest + SPARE_RAD, MOST_RAD),
         "control.station.gust_max_mps2": rate * wind.gust(STRONGEST),
         "bounds.align_tilt_deg": min(float(np.rad2deg(strongest)), scenario.limits.tilt_deg - SPARE_DEG),
         "control.station.k_position": STIFF[0],
@@ -47,6 +47,8 @@ def weathered(scenario: Scenario, mass: float) -> Scenario:
         "control.station.vertical": STIFF[3],
         "bounds.force_balanced_n": scenario.bounds.force_balanced_n + scenario.uav.drag_nspm * wind.sigma * GUST,
         "bounds.level_tilt_deg": 2.0 * scenario.bounds.level_tilt_deg,
+        "bounds.share_touched": scenario.bounds.share_touched
+        + scenario.control.thrust.carry_share * LIFT * wind.sinking,
         "limits.unexplained_n": scenario.limits.unexplained_n + sinks,
         "limits.shortfall_n": scenario.limits.shortfall_n + GUST * sinks,
     }
