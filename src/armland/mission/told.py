@@ -25,9 +25,9 @@ from armland.mission.table.mission import Start
 from armland.mission.uav import LEANT_MPS2, RECKONED_S
 from armland.models.airframe.lift import lift_range
 from armland.models.airframe.slope import tell_slope
-from armland.models.airframe.weather import GUST, STRONGEST, expected
 from armland.models.arm import ArmModel
 from armland.models.parameters import rotor_count
+from armland.models.weather import GUST, STRONGEST, expected
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario import Scenario

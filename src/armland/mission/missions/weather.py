@@ -1,4 +1,4 @@
-"""Which limits of calm air give way where the user foretells wind, see `models.airframe.weather`: keys that he has not set, and criteria."""
+"""Which limits of calm air give way where the user foretells wind, see `models.weather`: keys that he has not set, and criteria."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from armland.mission.table.mission import Criterion, Mission
 from armland.models.airframe.sizing import at, is_settled, nested
-from armland.models.airframe.weather import GUST, MOST_RAD, SPARE_RAD, STRONGEST, expected
+from armland.models.weather import GUST, MOST_RAD, SPARE_RAD, STRONGEST, expected
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from armland.models.airframe.file import foreign_of
 from armland.models.airframe.size import Size, size_of
-from armland.models.airframe.weather import started
 from armland.models.parameters import plate_mass, uav_parameters
+from armland.models.weather import started
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 

@@ -6,8 +6,8 @@ import pytest
 from armland.mission.missions.landing import LANDING
 from armland.mission.missions.weather import judged, weathered
 from armland.models.airframe.sizing import sized
-from armland.models.airframe.weather import MOST_RAD, expected, started
 from armland.models.parameters import plate_mass, uav_parameters
+from armland.models.weather import MOST_RAD, expected, started
 from armland.plant.wind.dryden import intensities
 from armland.plant.wind.profile import height_of_catch, speed_at
 from armland.scenario import load_scenario
