@@ -103,8 +103,7 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     p, s, what = b.told.act.uav, b.kept.act, row.uav
     c.uav_mode = MODES[row.link]
     learn_trim(b)
-    sigma = b.kept.estimate.plate.sigma_position
-    unseen = b.kept.estimate.seen == 0 or e.plate_age > p.reckoned or max(sigma[0], sigma[1], sigma[2]) > p.astray
+    unseen = b.kept.estimate.seen == 0 or _astray(e, b.kept.estimate.plate, p)
     blind = unseen and (what == STATION or (what == CRUISE and not p.fly_on))
     if what == AUTONOMOUS or blind:
         c.uav_mode = MODE_AUTONOMOUS
@@ -141,6 +140,12 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     s.alone = s.alone + 1 if c.uav_mode == MODE_AUTONOMOUS else 0
     s.sought = s.sought if s.alone > 0 else 0
     _send(conjugate(align), s, c)
+
+
+@njit(cache=True)
+def _astray(e: Record, plate: Record, p: Record) -> bool:
+    sigma = plate.sigma_position
+    return bool(e.plate_age > p.reckoned or max(sigma[0], sigma[1], sigma[2]) > p.astray)
 
 
 @njit(cache=True)

@@ -1,4 +1,4 @@
-"""Which limits of calm air give way where the user foretells wind, see `models.airframe.weather`: keys that he has not set, and criteria."""
+"""Which limits of calm air give way to foretold wind, see `models.airframe.weather`: keys that the user has not set, and criteria."""
 
 from typing import Any
 
