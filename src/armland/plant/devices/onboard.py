@@ -215,19 +215,8 @@ def _hover(world: Record, t: Record, noise: Array, speed: Array, climb: float, t
         v[i] = t.v_cm[i] + p.speed_bias[i] + s.speed_error[i]
     turned = np.array([c * e[0] - d * e[1], d * e[0] + c * e[1], e[2]])
     moving = np.array([c * v[0] - d * v[1], d * v[0] + c * v[1], v[2]])
-    gains = StationGains(
-        p.mass,
-        p.period_s,
-        p.k_position,
-        p.k_velocity,
-        p.k_integral,
-        p.speed_max,
-        p.integral_max,
-        p.tilt_max,
-        p.lift_min,
-        p.thrust_max,
-        1.0,
-    )
+    rates = (p.k_position, p.k_velocity, p.k_integral, p.speed_max, p.integral_max, p.tilt_max)
+    gains = StationGains(p.mass, p.period_s, *rates, p.lift_min, p.thrust_max, 1.0)
     if told and not kept.faults.deaf:
         turned += kept.link.arrived.step
     reference, g = StationReference(turned, still, still, s.heading), world.environment.gravity
