@@ -148,8 +148,10 @@ def test_belief_equals_the_hardware_unless_said_otherwise(landing) -> None:
     truth, belief = dump(landing), dump(landing.believed())
     for name in HARDWARE:
         assert belief[name] == truth[name]
+    # What is foretold follows the plant's mean wind where the user says nothing.
+    assert belief.pop("forecast") == {"wind_mps": landing.foretold_mps}
     assert {k: v for k, v in belief.items() if k not in PLANT_ONLY} == {
-        k: v for k, v in truth.items() if k not in PLANT_ONLY
+        k: v for k, v in truth.items() if k not in (*PLANT_ONLY, "forecast")
     }
 
 
@@ -179,7 +181,7 @@ def test_belief_replaces_what_it_names_and_nothing_else(landing) -> None:
     assert (belief.uav.mass_kg, belief.onboard.hover.k_position) == (0.6, 2.0)
     assert belief.belief == {}
     difference = {name for name in Scenario.model_fields if getattr(belief, name) != getattr(wrong, name)}
-    assert difference == {"uav", "onboard", "belief"}
+    assert difference == {"uav", "onboard", "belief", "forecast"}
     assert belief.onboard.hover.k_velocity == wrong.onboard.hover.k_velocity
 
 

@@ -127,7 +127,7 @@ def kept_upwind(bench, towards, lean, height):
 def reach(bench, place, towards, lean, height):
     """How far (2,), m, the UAV may be blown from `place` (2,), downwind and upwind, before the plant's camera loses it."""
     turn = lean * np.array([-towards[1], towards[0], 0.0])
-    steps = np.arange(0.0, 0.5, 0.002)
+    steps = np.arange(0.0, 0.8, 0.002)
     top = bench.e["r"][0, 2] + height
     out = []
     for sign in (-1.0, 1.0):
@@ -137,14 +137,14 @@ def reach(bench, place, towards, lean, height):
 
 
 @pytest.mark.parametrize("angle", np.arange(0.0, 2.0 * np.pi, np.pi / 3.0))
-def test_leaning_uav_is_kept_where_a_gust_of_either_way_takes_it_out_of_view_equally_late(below, angle):
-    """Negative control: right above the camera a UAV that leans by 20 degrees is lost downwind after a third of that."""
+def test_leaning_uav_is_kept_where_a_gust_takes_it_out_of_view_later(below, angle):
+    """Negative control: right above the camera a UAV that leans by 20 degrees is lost downwind after half of that."""
     towards, lean, height = (np.cos(angle), np.sin(angle)), np.deg2rad(20.0), 0.9
     place = kept_upwind(below, towards, lean, height)
     assert place @ towards > 0.05
     there, above = reach(below, place, towards, lean, height), reach(below, [0.0, 0.0], towards, lean, height)
-    assert there.min() > 2.0 * above.min()
-    assert there.min() > 0.6 * there.max()
+    # Half of the lean is made up for: it is still lost sooner downwind.
+    assert 1.8 * above.min() < there.min() < there.max() < above.max()
 
 
 def test_uav_that_hardly_leans_or_is_where_it_is_caught_is_kept_above_the_camera(below):

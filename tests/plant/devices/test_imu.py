@@ -38,7 +38,7 @@ def test_gyro_bias_shows_in_the_rates_alone(bench):
 def falling(b, k, velocity, noise=0.0):
     """Specific force that is read at tick `k` of a UAV that moves at `velocity` (3,), m/s, W."""
     b.put("quat", TURN.as_quat(scalar_first=True))
-    b.put("velocity", velocity)
+    b.put("v_cm", velocity)
     return b.read(k, noise)["uav_force"][0].copy()
 
 

@@ -59,11 +59,11 @@ def tell(told: Records, scenario: Scenario, scene: Scene, noisy: bool) -> None:
     # Twice a standard deviation at most, each axis by itself.
     drawn = np.clip(stream(scenario.run.seed, "reference.bias").standard_normal(12), -2.0, 2.0)
     told["bias"] = from_rotation_vector(np.deg2rad([u.tilt_deg, u.tilt_deg, u.heading_deg]) * drawn[:3])
-    told["rate_bias"], told["v_bias"] = np.deg2rad(u.rate_bias_dps) * drawn[3:6], u.velocity_mps * drawn[6:9]
+    told["rate_bias"], told["v_bias"] = np.deg2rad(u.rate_bias_deg_s) * drawn[3:6], u.velocity_mps * drawn[6:9]
     told["a_bias"] = u.acceleration_bias_mps2 * drawn[9:12]
     told["sigma"] = (
         np.deg2rad(u.tilt_noise_deg),
-        np.deg2rad(u.rate_noise_dps),
+        np.deg2rad(u.rate_noise_deg_s),
         u.velocity_noise_mps,
         u.acceleration_noise_mps2,
     )
