@@ -8,8 +8,7 @@ from numba import njit
 from scipy.signal import welch
 
 from armland.plant.devices.air import (
-    BELOW_M,
-    BESIDE_M,
+    BELOW_RADII,
     OVER_RAILS,
     blow,
     gain,
@@ -266,19 +265,39 @@ def test_rotors_near_the_ground_really_give_more(bench):
     assert b.act(1)[2] / free == pytest.approx(16.0 / 15.0, rel=1e-6)
 
 
+HUB = 0.12
+
+
 @pytest.mark.parametrize(
-    ("beside", "below", "pressed"),
+    ("beside", "below", "share"),
     [
-        (0.0, 0.1, True),
-        (0.99 * BESIDE_M, 0.1, True),
-        (1.01 * BESIDE_M, 0.1, False),
-        (0.0, 1.01 * BELOW_M, False),
-        (0.0, -0.1, False),
+        (0.0, 2.0 * R, 1.0),
+        (HUB - 0.51 * R, 2.0 * R, 1.0),
+        (HUB, 2.0 * R, 0.5),
+        (HUB + 0.51 * R, 2.0 * R, 0.0),
+        (0.0, BELOW_RADII * R, 0.5),
+        (0.0, (BELOW_RADII + 0.51) * R, 0.0),
+        (0.0, -0.01, 0.0),
     ],
 )
-def test_downwash_presses_on_a_tool_below_the_uav_and_nowhere_else(air, beside, below, pressed):
+def test_downwash_presses_on_a_tool_below_the_rotors_and_nowhere_else(air, beside, below, share):
+    assert pressed(air, beside, below) == pytest.approx(0.15 * share, abs=1e-12)
+
+
+def test_a_uav_that_drifts_changes_its_downwash_by_no_step(air):
+    """A step would be taken for one of the force sensor's scale."""
+    for across in (lambda x: (x, 2.0 * R), lambda x: (0.0, x)):
+        forces = [pressed(air, *across(x)) for x in np.arange(0.0, 0.8, 1e-3)]
+        assert max(forces) == pytest.approx(0.15)
+        assert min(forces) == pytest.approx(0.0, abs=1e-12)
+        assert np.abs(np.diff(forces)).max() < 0.011 * 0.15
+
+
+def pressed(air, beside, below):
+    """Force on the tool, N, downwards."""
     told, _, _, truth = air
-    told["wash"], applied = 0.03, np.ones(6)
+    told["wash"], told["beside"], applied = 0.03, HUB, np.ones(6)
     truth["r_cm"], truth["ee"] = [0.6, 0.0, 1.0], [0.6 + 0.6 * beside, 0.8 * beside, 1.0 - below]
     wash(told[0], 5.0, truth[0], applied)
-    np.testing.assert_allclose(applied, [1.0, 1.0, 1.0 - (0.15 if pressed else 0.0), 1.0, 1.0, 1.0])
+    np.testing.assert_array_equal(applied[[0, 1, 3, 4, 5]], 1.0)
+    return 1.0 - applied[2]

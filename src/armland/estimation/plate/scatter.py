@@ -47,13 +47,22 @@ def compare(z: Array, x: Array, P: Array, R: Array, s: Record) -> float:
         s.innovation[i] = y
     if s.compared == 0:
         return MEAN
-    if s.fused >= SETTLED and s.scattered == 0 and both < 0.0 and both**2 > PERSISTS * (P[2, 2] + R[2, 2]):
+    far = distance_of(apart, P, R)
+    # Two that differ far are no fall, which both of them see: one of them is an outlier.
+    if (
+        far < MEAN * FAR_RATIO
+        and s.fused >= SETTLED
+        and s.scattered == 0
+        and both < 0.0
+        and both**2 > PERSISTS * (P[2, 2] + R[2, 2])
+    ):
         # p, v and b err by one acceleration that has acted since.
         err = (0.5 * SURGE_S**2 * SURGE_MPS2, SURGE_S * SURGE_MPS2, SURGE_MPS2)
         for i in range(3):
             for k in range(3):
                 P[3 * i + 2, 3 * k + 2] += err[i] * err[k]
-    return distance_of(apart, P, R)
+        return distance_of(apart, P, R)
+    return far
 
 
 @njit(cache=True)

@@ -11,12 +11,13 @@
 g ← h g + σ √(1 − h²) ν, which keeps its variance whatever the step, and begins with it. κ = 1 + e ((1 − (R/4z)²)⁻¹ − 1) (Cheeseman
 and Bennett), valid from z = R/2; of the cradle only the share of the rotors' discs counts that lies above its rails.
 The wind of `[air]` follows its profile up to the UAV's height; turbulence keeps its axes, which are the mean wind's.
-Downwash: a share of the thrust presses on the tool while it is below the UAV.
+Downwash: a share of the thrust presses on the tool while it is below the rotors.
 """
 
 import numpy as np
 from numba import njit
 
+from armland.models.parameters import rotor_set
 from armland.plant.scene.composition import Scene
 from armland.plant.wind.dryden import W20_MPS, across_step, along_step, intensities, lengths
 from armland.plant.wind.profile import (
@@ -38,8 +39,9 @@ CORRELATED_S = 1.0
 OVER_RAILS = 0.15
 """Share of the rotors' discs above the rails: two tubes of 24 mm below two rotors each of 0.2 m diameter."""
 
-BESIDE_M, BELOW_M = 0.12, 0.6
-"""How far beside and below the UAV's centre of mass the tool is reached by downwash: as far as the rotors' hubs; six radii."""
+BELOW_RADII = 6.0
+"""How far below the UAV's centre of mass the tool is reached by downwash, in radii of a rotor; beside it, as far as the rotors' hubs.
+Assumption. Both edges are as soft as a rotor's radius is wide, as a wake's are that mixes with the air around it."""
 
 
 def told_layout(joints: int) -> np.dtype:
@@ -54,6 +56,7 @@ def told_layout(joints: int) -> np.dtype:
             ("radius", "f8"),
             ("rails", "f8"),  # m, height of the rails; −∞ where there are none
             ("wash", "f8"),  # share of the thrust on the tool
+            ("beside", "f8"),  # m, horizontal, of the farthest rotor's hub from the centre of mass
             ("blows", "i8"),  # whether `[air]` has any wind
             ("profile", "i8"),  # number in `wind.profile.PROFILES`
             ("speed", "f8"),  # m/s, at `reference`
@@ -82,6 +85,7 @@ def tell(told: Records, scenario: Scenario, scene: Scene) -> None:
     """Fill `told` (1,): still air but for what `[air]` says."""
     told["hold"] = np.exp(-1.0 / (scenario.run.rate_hz * CORRELATED_S))
     told["radius"] = scenario.rotors.radius_m
+    told["beside"] = np.hypot(*rotor_set(scenario).place[:, :2].T).max()
     told["rails"] = scene.model.body("cradle").pos[2] if "cradle" in scene.parts else -np.inf
     if scenario.air.blows:
         tell_wind(told, scenario)
@@ -181,7 +185,13 @@ def wash(told: Record, thrust: float, t: Record, applied: Array) -> None:
         t: truth of the tick.
         applied: MuJoCo's row (6,) of `xfrc_applied` of the tool, N, N·m, W, added to.
     """
-    beside = np.sqrt((t.r_cm[0] - t.ee[0]) ** 2 + (t.r_cm[1] - t.ee[1]) ** 2)
-    below = t.r_cm[2] - t.ee[2]
-    if 0.0 < below < BELOW_M and beside < BESIDE_M:
-        applied[2] -= told.wash * thrust
+    beside = np.sqrt((t.r_cm[0] - t.ee[0]) ** 2 + (t.r_cm[1] - t.ee[1]) ** 2) / told.radius
+    below = (t.r_cm[2] - t.ee[2]) / told.radius
+    down = _inside(below - 0.5) * _inside(BELOW_RADII - below)
+    applied[2] -= told.wash * thrust * down * _inside(told.beside / told.radius - beside)
+
+
+@njit(cache=True)
+def _inside(radii: float) -> float:
+    # Share that acts so many radii within an edge: ½ on it, all from half a radius on.
+    return min(max(0.5 + radii, 0.0), 1.0)
