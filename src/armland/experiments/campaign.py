@@ -11,7 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from armland.experiments.episode import attempt
+from armland.errors import ConfigurationError
+from armland.experiments.episode import attempt, prepare
+from armland.mission.plan import Plan
 from armland.scenario import Scenario
 
 
@@ -36,14 +38,24 @@ def campaign(
         jobs: threads; as many as there are cores if absent.
         done: called with each row, in the order of the seeds.
     """
-    rows = []
+    rows, known = [], _common(scenario, mission, law, experiment)
     with ThreadPoolExecutor(jobs or os.cpu_count() or 1, "episode") as pool:
-        flights = [pool.submit(attempt, scenario, mission, seed, law=law, experiment=experiment) for seed in seeds]
+        more = {"law": law, "experiment": experiment, "known": known}
+        flights = [pool.submit(attempt, scenario, mission, seed, **more) for seed in seeds]
         for flight in flights:
             rows.append(flight.result())
             if done is not None:
                 done(rows[-1])
     return rows
+
+
+def _common(scenario: Scenario, mission: str, law: str | None, experiment: str | None) -> Plan | None:
+    # The plan of all flights; none where each has to find its own place, or to say itself what speaks against it.
+    try:
+        flight = prepare(scenario, mission, law=law, experiment=experiment)
+    except ConfigurationError:
+        return None
+    return None if flight.moved else flight.plan
 
 
 Row = dict[str, Any]  # The result of one episode, see `episode.Episode`

@@ -75,8 +75,12 @@ def prepare(
     law: str | None = None,
     experiment: str | None = None,
     trial: bool = False,
+    known: Plan | None = None,
 ) -> Flight:
     """Check everything about a flight, with arguments as for `fly`, before anything moves or is written.
+
+    Args:
+        known: the plan of a flight that differs in nothing but the seed, where there is one.
 
     Raises:
         ConfigurationError: what is refused, with the value and its bound.
@@ -85,7 +89,9 @@ def prepare(
         scenario = scenario.with_seed(seed)
 
     def make(one: Scenario) -> Flight:
-        return _prepared(one, mission, law, experiment, trial)
+        if known is not None:
+            return _simulated(one, known.again(one.run.seed))
+        return _simulated(one, plan(one, mission, law=law, experiment=experiment, trial=trial))
 
     scenario = sized(scenario)
     try:
@@ -106,8 +112,7 @@ def prepare(
         return flight._replace(moved=moved)
 
 
-def _prepared(scenario: Scenario, mission: str, law: str | None, experiment: str | None, trial: bool) -> Flight:
-    made = plan(scenario, mission, law=law, experiment=experiment, trial=trial)
+def _simulated(scenario: Scenario, made: Plan) -> Flight:
     check_kind(made.mission)
     if made.experiment is not None:
         # An experiment sets the UAV's own controller as well.
@@ -170,9 +175,9 @@ def fly_prepared(flight: Flight, log: Path | None = None, progress: Progress | N
 
 
 def attempt(scenario: Scenario, mission: str, seed: int, **more: Any) -> dict[str, Any]:
-    """The result of `fly`; where it raises, a row that says what broke."""
+    """The result of one flight, arguments as for `prepare`; where it raises, a row that says what broke."""
     try:
-        return fly(scenario, mission, seed, **more).result
+        return fly_prepared(prepare(scenario, mission, seed, **more)).result
     except Exception as error:
         reason = f"broke: {type(error).__name__}: {error}"
         return {"mission": mission, "seed": seed, "success": False, "reason": reason, "state": "unknown"}

@@ -83,6 +83,11 @@ class Plan(NamedTuple):
         """Index of the phase of that name."""
         return self.names.index(phase)
 
+    def again(self, seed: int) -> "Plan":
+        """The same for another seed, which nothing of a plan depends on, with an arm model of its own: two flights share no memory
+        that is written to."""
+        return self._replace(arm=arm_model(self.scenario), scenario=self.scenario.with_seed(seed))
+
 
 def plan(
     scenario: Scenario,
