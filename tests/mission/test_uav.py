@@ -525,6 +525,24 @@ def test_a_gust_that_no_image_has_shown_lately_is_forgotten(bench, age, left):
     assert leans[0] - leans[1] == pytest.approx(-0.5 * left / 9.81, rel=0.02)
 
 
+@pytest.mark.parametrize("wind", [1.5, -1.5])
+def test_wind_is_not_held_against_twice_by_a_uav_that_the_hinge_lets_go(bench, wind):
+    """On the hinge it leans against the wind, free of force, and the pose filter sees one that leans and does not move."""
+    axes = {}
+    for freed in (1, 0):
+        at_station(bench)
+        kept = bench.kept["act"]
+        kept["alone"], kept["freed"], kept["integral"] = 0, freed, 0.0
+        kept["integral"][0, 0] = -wind
+        bench.kept["estimate"]["plate"]["bias"][0, 0] = wind
+        as_uav(bench, "station")
+        axes[freed] = axis_of(bench)
+        assert kept["freed"][0] == 0
+    assert axes[1][0] / axes[1][2] * 9.81 == pytest.approx(-wind, rel=0.03)
+    # Negative control: it would lean twice as far.
+    assert axes[0][0] / axes[0][2] * 9.81 == pytest.approx(-2.0 * wind, rel=0.05)
+
+
 @pytest.mark.parametrize("wind", [0.4, -0.4])
 def test_wind_is_not_held_against_twice_when_a_uav_is_taken_over(bench, wind):
     """Trim −d by its own hover, of which the pose filter's share is cancelled beside the integral: the sum stays the trim."""

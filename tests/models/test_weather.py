@@ -7,7 +7,7 @@ from armland.mission.missions.landing import LANDING
 from armland.mission.missions.weather import judged, weathered
 from armland.models.airframe.sizing import sized
 from armland.models.parameters import plate_mass, uav_parameters
-from armland.models.weather import MOST_RAD, expected, started
+from armland.models.weather import MOST_RAD, expected, started, swayed
 from armland.plant.wind.dryden import intensities
 from armland.plant.wind.profile import height_of_catch, speed_at
 from armland.scenario import load_scenario
@@ -47,12 +47,22 @@ def test_lean_balances_drag_and_weight():
     assert weight / np.cos(lean) * np.sin(lean) == pytest.approx(drag)
 
 
+def test_uav_that_a_gust_takes_along_is_under_control_at_the_speed_that_its_own_hover_stops():
+    """Its drag in the gust, of two standard deviations, over the damping of its own hover; the lean is that of three."""
+    scenario = landing(8.0)
+    mass, wind = mass_of(scenario), expected(scenario)
+    lean, speed = swayed(scenario, mass)
+    assert speed * scenario.onboard.hover.k_velocity * mass == pytest.approx(scenario.uav.drag_nspm * 2.0 * wind.sigma)
+    assert np.tan(np.deg2rad(lean)) * mass * 9.81 == pytest.approx(scenario.uav.drag_nspm * wind.gust(3.0))
+
+
 def test_calm_changes_nothing():
     scenario = landing(0.0)
     assert started(scenario, mass_of(scenario)) == {}
     believed = sized(scenario).believed()
     assert weathered(believed, mass_of(scenario)) is believed
     assert judged(LANDING, believed, 5.0) is LANDING
+    assert swayed(scenario, mass_of(scenario)) == (0.0, 0.0)
     assert LANDING.phases(believed) == LANDING.phases(load_scenario("landing").believed())
 
 

@@ -66,6 +66,7 @@ def kept_layout() -> np.dtype:
                 "f8",
                 (2,),
             ),  # m/s², horizontal, that held the UAV against the wind while it kept its station [D]
+            ("freed", "i8"),  # 1 from the balance on the hinge until the station keeping begins
             ("short", "f8"),  # N, that a UAV which was caught leaves to the arm and should not
             ("falls_short", "i8"),  # 1 while that is learnt
             ("before", "f8"),  # N, `hover` before that

@@ -25,6 +25,7 @@ from armland.mission.reference.guided import (
     learn_shortfall,
     learn_trim,
     take_over,
+    take_over_freed,
 )
 from armland.mission.reference.view import in_view, seek
 from armland.mission.reference.view import told_layout as view_told
@@ -114,6 +115,9 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
         keep_shortfall(p, s)
         if s.alone > 0:
             take_over(b.kept.estimate.plate.bias, p, s)
+        elif s.freed:
+            take_over_freed(b.kept.estimate.plate.bias, p, s)
+        s.freed = 0
         if tick % p.period == 0:
             keep(in_view(e, row.seeks == 1, p, s), p.lever, np.zeros(3), b)
     elif what == CRUISE:
@@ -176,7 +180,7 @@ def _level(p: Record, s: Record) -> None:
 def _free_of_force(e: Record, p: Record, s: Record) -> None:
     step = min(max(p.balance_rate * e.hinge_force[2], -p.thrust_rate), p.thrust_rate) * p.tick_s
     s.thrust = min(max(s.thrust + step, p.thrust_min), p.thrust_max)
-    s.hover = s.thrust
+    s.hover, s.freed = s.thrust, 1
     # What carries the weight and leans against the wind now is where the station keeping takes over.
     for i in range(2):
         s.integral[i] += p.balance_rate * e.hinge_force[i] / p.mass * p.tick_s

@@ -82,3 +82,20 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
         "place.start_above_m": scenario.place.start_above_m + down,
         "onboard.hover.tilt_max_rad": max(own.tilt_max_rad, lean),
     }
+
+
+def swayed(scenario: Scenario, mass: float) -> tuple[float, float]:
+    """Lean, degrees, and speed, m/s, that a UAV in the wind that is foretold has beyond one in calm air without being out of control.
+
+    The speed is what a gust of two standard deviations gives to it against its own hover.
+
+    Args:
+        scenario: as it flies.
+        mass: kg, of all that flies.
+    """
+    wind, rate = expected(scenario), scenario.uav.drag_nspm / mass
+    if wind.mean <= 0.0:
+        return 0.0, 0.0
+    g = float(np.linalg.norm(scenario.environment.gravity_mps2))
+    lean = float(np.rad2deg(wind.lean(rate / g, STRONGEST)))
+    return lean, GUST * rate * wind.sigma / scenario.onboard.hover.k_velocity

@@ -46,6 +46,8 @@ class Bounds(Section):
 
     uav_error_m: of.Length = key(0.06, "distance to the station from which the arm approaches")
     uav_speed_mps: of.PositiveSpeed = key(0.15, "speed of the UAV at which the arm approaches")
+    flown_error_m: of.Length = key(0.06, "distance to its station at which a UAV that was let go has taken off")
+    flown_speed_mps: of.PositiveSpeed = key(0.15, "its speed there")
     align_offset_m: of.Length = key(0.004, "horizontal offset at which the arm closes")
     align_speed_mps: of.PositiveSpeed = key(0.06, "relative speed at which the arm closes")
     align_tilt_deg: of.Tilt = key(10.0, "tilt of the UAV at which the arm closes")

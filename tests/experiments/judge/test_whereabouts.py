@@ -45,6 +45,17 @@ def test_flying_within_what_it_was_given(ticks, brief):
     assert state_of(flying, brief._replace(given=np.array([0.7, 0.0, 0.0]))) == "flying"
 
 
+def test_in_wind_one_that_leans_and_sways_is_not_lost(ticks, brief):
+    flying, lean = ticks[:900], np.deg2rad(30.0)
+    flying["truth"]["quat"] = [np.cos(0.5 * lean), np.sin(0.5 * lean), 0.0, 0.0]
+    assert state_of(flying, brief) == "lost"
+    assert state_of(flying, brief._replace(swayed=(20.0, 0.5))) == "flying"
+    assert state_of(flying, brief._replace(swayed=(4.0, 0.5))) == "lost"
+    flying["truth"]["v"][:, 0] = 0.8
+    assert state_of(flying, brief._replace(swayed=(20.0, 0.0))) == "lost"
+    assert state_of(flying, brief._replace(swayed=(20.0, 0.5))) == "flying"
+
+
 def test_one_that_lies_on_the_arm_is_not_held(ticks, brief):
     held = ticks[:1400]
     held["truth"]["foul"][-5:, 2] = 1.0

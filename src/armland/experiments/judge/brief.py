@@ -15,6 +15,7 @@ from armland.mission.plan import Plan
 from armland.mission.reference.path import Leg
 from armland.mission.supervisor.table import FAULTS
 from armland.mission.table.mission import Criterion
+from armland.models.weather import swayed
 from armland.plant.scene.composition import Scene
 from armland.plant.scene.uav import UAV
 from armland.rotations import Array
@@ -51,6 +52,7 @@ class Brief(NamedTuple):
     uav_cm: Array  # (3,) m, B: centre of mass in the UAV's body of `solids`
     put_down: Array  # (3,) m, D: where the pivot is when the UAV stands in the middle of the cradle
     given: Array  # (3,) m/s, D: velocity that the UAV keeps after the release
+    swayed: tuple[float, float]  # Lean, degrees, and speed, m/s, that the wind gives to a UAV which is under control
     legs: tuple[Leg, ...]  # Of the path that the mission follows; none where it follows none
     judged_as: str  # Row of `judgement.KINDS`
     praise: str  # What to say where all is well
@@ -83,6 +85,7 @@ def brief_of(metadata: Mapping[str, str]) -> Brief:
             uav_cm=np.array(json.loads(metadata.get("uav_cm", "[0.0, 0.0, 0.0]"))),
             put_down=np.array(json.loads(metadata["put_down"])),
             given=np.array(json.loads(metadata["given"])),
+            swayed=tuple(json.loads(metadata.get("swayed", "[0.0, 0.0]"))),
             legs=tuple(_leg(leg) for leg in json.loads(metadata["legs"])),
             judged_as=metadata["judged_as"],
             praise=metadata["praise"],
@@ -129,6 +132,7 @@ def metadata_of(scenario: Scenario, plan: Plan, scene: Scene) -> dict[str, str]:
         "screws": screws_of(scene)._asdict(),
         "gravity": float(np.linalg.norm(scenario.environment.gravity_mps2)),
         "weight": plan.weight_n,
+        "swayed": swayed(scenario, plan.weight_n / float(np.linalg.norm(scenario.environment.gravity_mps2))),
         "given": place.takeoff_velocity_mps if place.fly_on else (0.0, 0.0, 0.0),
         "criteria": [list(c) for c in mission.criteria],
         "timeouts": dict(mission.timeouts),

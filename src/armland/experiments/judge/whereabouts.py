@@ -8,7 +8,7 @@ from armland.experiments.judge.deck import deck_speed
 from armland.rotations import Array
 
 FLYING_SPEED_MPS = 0.6  # A UAV that flies off by itself is not faster, unless the arm has given it more
-TOPPLED_DEG = 25.0  # Tilt beyond which a UAV in the air is out of control
+TOPPLED_DEG = 25.0  # Tilt beyond which a UAV in the air is out of control, and beyond what it leans against the wind
 LEANING_DEG = 46.0  # Tilt of one that leans on both of the hinge's stops, 30 degrees each, a little askew
 FALL_MPS = 1.2  # Faster than this downwards is a fall: from 7 cm
 
@@ -48,8 +48,9 @@ def state_of(ticks: Ticks, brief: Brief) -> str:
     toppled = late["foul"][:, 2].any() or tilt > LEANING_DEG
     if speed < BALANCED_MPS and late["touching"].min() == 4 and not toppled:
         return "held"
-    allowed = max(FLYING_SPEED_MPS, 0.25 + float(np.linalg.norm(brief.given))) + deck
-    if late["r"][:, 2].min() > LOW_M and speed < allowed and tilt < TOPPLED_DEG:
+    lean, blown = brief.swayed
+    allowed = max(FLYING_SPEED_MPS, 0.25 + float(np.linalg.norm(brief.given))) + blown + deck
+    if late["r"][:, 2].min() > LOW_M and speed < allowed and tilt < TOPPLED_DEG + lean:
         return "flying"
     return "lost"
 
@@ -76,15 +77,15 @@ def _uav(ticks: Ticks, brief: Brief) -> str:
     if state == "standing":
         running = truth["rotor_thrust"][-1].sum() > least(CARRIED_N, CARRIED_SHARE, brief)
         return f"the UAV stands on the cradle, its rotors {'running' if running else 'stopped'}"
-    return f"the UAV is lost: it {_fate(truth)}, and is now at ({x:.2f}, {y:.2f}, {z:.2f}) m"
+    return f"the UAV is lost: it {_fate(truth, brief.swayed[0])}, and is now at ({x:.2f}, {y:.2f}, {z:.2f}) m"
 
 
-def _fate(truth: NDArray[np.void]) -> str:
+def _fate(truth: NDArray[np.void], lean: float) -> str:
     fall, tilt = float(-truth["v"][:, 2].min()), float(tilt_deg(truth["quat"][-1]))
     if fall > FALL_MPS:
         return f"fell at up to {fall:.1f} m/s"
     if truth["foul"][-1, 2]:
         return "lies against the arm"
-    if tilt > TOPPLED_DEG:
+    if tilt > TOPPLED_DEG + lean:
         return f"has toppled by {tilt:.0f}°"
     return f"is out of control at {float(np.linalg.norm(truth['v'][-1])):.2f} m/s with {tilt:.0f}° of tilt"

@@ -67,7 +67,7 @@ PHASES = (
     ),
     # Down to where it sees the UAV well.
     Phase("clear", arm="move", uav="station", seeks=True, duration_s=1.2, timeout_s=20.0).to(
-        "done", "progress > almost_one, uav_seen > half, uav_error < uav_error_m, uav_speed < uav_speed_mps", 0.5
+        "done", "progress > almost_one, uav_seen > half, uav_error < flown_error_m, uav_speed < flown_speed_mps", 0.5
     ),
     *TAKEOFF_FINALS,
 )

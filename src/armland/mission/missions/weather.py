@@ -6,7 +6,7 @@ import numpy as np
 
 from armland.mission.table.mission import Criterion, Mission
 from armland.models.airframe.sizing import at, is_settled, nested
-from armland.models.weather import GUST, MOST_RAD, SPARE_RAD, STRONGEST, expected
+from armland.models.weather import GUST, MOST_RAD, SPARE_RAD, STRONGEST, expected, swayed
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 
@@ -35,6 +35,8 @@ def weathered(scenario: Scenario, mass: float) -> Scenario:
         return scenario
     rate = scenario.uav.drag_nspm / mass
     strongest = wind.lean(rate / g, STRONGEST)
+    # m/s² of gusts, which a stiff station yields to in place and speed.
+    gusts = rate * wind.sigma
     # N, of the lift of a UAV whose rotors carry it, in sinking air.
     sinks = LIFT * mass * g * wind.sinking
     wanted = {
@@ -46,6 +48,8 @@ def weathered(scenario: Scenario, mass: float) -> Scenario:
         "control.station.k_integral": STIFF[2],
         "control.station.vertical": STIFF[3],
         "bounds.force_balanced_n": scenario.bounds.force_balanced_n + scenario.uav.drag_nspm * wind.sigma * GUST,
+        "bounds.flown_error_m": scenario.bounds.flown_error_m + gusts / (STIFF[0] * STIFF[1]),
+        "bounds.flown_speed_mps": scenario.bounds.flown_speed_mps + gusts / STIFF[1],
         "bounds.level_tilt_deg": 2.0 * scenario.bounds.level_tilt_deg,
         "bounds.share_touched": scenario.bounds.share_touched
         + scenario.control.thrust.carry_share * LIFT * wind.sinking,
@@ -70,8 +74,13 @@ def judged(mission: Mission, scenario: Scenario, weight: float) -> Mission:
     wind = expected(scenario)
     if wind.mean <= 0.0:
         return mission
-    lean = float(np.rad2deg(wind.lean(scenario.uav.drag_nspm / weight, STRONGEST)))
-    more = {"touchdown_speed": (ROUGH_MPS, 0.0), "touchdown_tilt": (ROUGH_DEG, 0.0), "flying_tilt": (0.0, lean)}
+    lean, blown = swayed(scenario, weight / float(np.linalg.norm(scenario.environment.gravity_mps2)))
+    more = {
+        "touchdown_speed": (ROUGH_MPS, 0.0),
+        "touchdown_tilt": (ROUGH_DEG, 0.0),
+        "flying_tilt": (0.0, lean),
+        "flying_speed": (0.0, blown),
+    }
     return mission._replace(criteria=tuple(_in_wind(c, *more.get(c.name, (0.0, 0.0))) for c in mission.criteria))
 
 

@@ -122,6 +122,22 @@ def take_over(bias: Array, p: Record, s: Record) -> None:
 
 
 @njit(cache=True)
+def take_over_freed(bias: Array, p: Record, s: Record) -> None:
+    """Let the station keeping begin where the hinge was freed of force.
+
+    What leans and lifts the UAV there holds against the wind alone. The pose filter has learnt that wind meanwhile, too: a UAV that
+    leans and does not move. Counted twice, it would fly off against the wind.
+
+    Args:
+        bias: disturbance (3,) of the pose filter, m/s², D.
+        p: what commanding the UAV is told.
+        s: what acting keeps; `integral`, until now that of the balance, is written.
+    """
+    for i in range(3):
+        s.integral[i] = min(max(s.integral[i] + _gust(bias, i, p), -p.integral_max), p.integral_max)
+
+
+@njit(cache=True)
 def _gust(bias: Array, i: int, p: Record) -> float:
     # Disturbance, m/s², that is cancelled on axis `i`, of the pose filter's `bias` (3,).
     return float(min(max(p.gust_share * bias[i], -p.gust_max), p.gust_max))
