@@ -19,9 +19,9 @@ from numba import njit
 from armland.estimation.plate import alignment
 from armland.estimation.plate.late_fusion import RING, Noise, carry, correct, insert, place, replay, spread
 from armland.estimation.plate.reckoning import present
-from armland.estimation.plate.scatter import SETTLED, compare, learn_scatter, turned
+from armland.estimation.plate.scatter import SETTLED, compare, compare_attitude, learn_scatter
 from armland.records import Record
-from armland.rotations import Array, conjugate, cross, from_rotation_vector, matrix, multiply, skew
+from armland.rotations import Array, conjugate, cross, from_rotation_vector, matrix, multiply, skew, turned
 
 LEAP_M, LEAP_S = 0.06, 0.3
 """A marker that is found so far from where it is expected, so soon after it was seen, is another one, or nothing that flies: in that
@@ -74,7 +74,7 @@ def fuse(m: Record, p: Record, s: Record) -> int:
     gate = p.gate if near else -1.0
     s.distance[1] = alignment.correct(s.align, capture, theta, R_theta, p.align_walk, gate, p.tick_s)
     upright = s.distance[1] <= p.gate
-    learn_scatter(scatter, turned(theta, R_theta, s), upright, s)
+    learn_scatter(scatter, compare_attitude(theta, R_theta, s), upright, s)
     s.gated = 0 if near and upright else s.gated + 1
     # One that is alike time and again is to be believed; scatter is noise that has yet to be learnt, unless that never ends: then
     # what was expected is wrong.
@@ -139,17 +139,17 @@ def _resolve(m: Record, p: Record, s: Record) -> tuple[Array, Array, Array]:
     # Centre of mass (3,) and its covariance (3, 3) m²; covariance (3, 3) rad² of the attitude's residual; all in deck axes.
     row = m.camera_capture % RING
     R_wc = matrix(s.camera_quat[row])
-    lever = _turned(matrix(multiply(s.align.quat, s.quat[row])), p.marker_offset)
-    offset = _turned(R_wc, m.camera_position)
-    z, seen, turned = np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
+    lever = turned(matrix(multiply(s.align.quat, s.quat[row])), p.marker_offset)
+    offset = turned(R_wc, m.camera_position)
+    z, seen, rotated = np.empty(3), np.zeros((3, 3)), np.zeros((3, 3))
     T = alignment.covariance(s.align, 0.0, 0.0)
     for i in range(3):
         z[i] = s.camera_position[row, i] + offset[i] - lever[i]  # (P.2)
         seen[i, i] = s.noise * m.camera_sigma[i] ** 2
-        turned[i, i] = s.noise * m.camera_sigma[3 + i] ** 2 + p.sigma_attitude**2
+        rotated[i, i] = s.noise * m.camera_sigma[3 + i] ** 2 + p.sigma_attitude**2
         T[i, i] += p.sigma_attitude**2
     # An error of δ shows as one of the position, too: without it the first samples would not fit each other.
-    return z, _congruent(R_wc, seen) + _congruent(skew(lever), T), _congruent(R_wc, turned)
+    return z, _congruent(R_wc, seen) + _congruent(skew(lever), T), _congruent(R_wc, rotated)
 
 
 @njit(cache=True)
@@ -204,7 +204,7 @@ def predict(horizon_s: float, p: Record, s: Record, o: Record) -> None:
     x, P = present(p, s)
     spread(P, horizon_s, p.blind, p.walk)
     R = matrix(quat)
-    lever, swing = _turned(R, p.plate_offset), _turned(R, cross(s.rate, p.plate_offset))
+    lever, swing = turned(R, p.plate_offset), turned(R, cross(s.rate, p.plate_offset))
     for i in range(3):
         a = s.track.acceleration[now % RING, i] + x[6 + i]
         o.acceleration[i], o.bias[i] = a, x[6 + i] + s.felt[i]
@@ -219,7 +219,7 @@ def predict(horizon_s: float, p: Record, s: Record, o: Record) -> None:
 @njit(cache=True)
 def _deviations(P: Array, R: Array, lever: Array, horizon_s: float, p: Record, s: Record, o: Record) -> None:
     # The marker is seen where it is: an error of δ moves the plate only about the marker.
-    arm = skew(_turned(R, p.plate_offset - p.marker_offset))
+    arm = skew(turned(R, p.plate_offset - p.marker_offset))
     T = alignment.covariance(s.align, (s.track.tick - s.align.tick) * p.tick_s + horizon_s, p.align_walk)
     reach = lever[0] ** 2 + lever[1] ** 2 + lever[2] ** 2
     for i in range(3):
@@ -229,15 +229,6 @@ def _deviations(P: Array, R: Array, lever: Array, horizon_s: float, p: Record, s
         o.sigma_position[i] = np.sqrt(P[i, i] + by_attitude[i, i])
         o.sigma_velocity[i] = np.sqrt(P[3 + i, 3 + i] + p.sigma_rate**2 * (reach - lever[i] ** 2))
         o.sigma_attitude[i] = np.sqrt(T[i, i])
-
-
-@njit(cache=True)
-def _turned(R: Array, a: Array) -> Array:
-    # R a; a call of BLAS costs more than nine products.
-    b = np.zeros(3)
-    for i in range(3):
-        b[i] = R[i, 0] * a[0] + R[i, 1] * a[1] + R[i, 2] * a[2]
-    return b
 
 
 @njit(cache=True)

@@ -25,7 +25,7 @@ from numba import njit
 
 from armland.estimation.plate.late_fusion import RING, Noise, carry, insert, reckon
 from armland.records import Record
-from armland.rotations import Array, from_rotation_vector, matrix, multiply
+from armland.rotations import Array, from_rotation_vector, matrix, multiply, turned
 
 
 @njit(cache=True)
@@ -98,7 +98,7 @@ def _reckon_from(start: int, tick: int, q: Array, p: Record, s: Record) -> None:
             s.quat[k % RING, i] = q[i]
         a = _model_acceleration(q, R_align, s.lift[k % RING] / p.mass, s.push[k % RING])
         if p.gust_max > 0.0:
-            gust = _turned(R_align, _turned(matrix(q), s.gust))
+            gust = turned(R_align, turned(matrix(q), s.gust))
             for i in range(3):
                 s.felt[i] = gust[i]
                 a[i] += gust[i]
@@ -117,14 +117,6 @@ def _feel(m: Record, push: Array, lift: float, gravity: tuple[float, float, floa
             for j in range(3):
                 u -= R[k, i] * R_align[j, k] * (push[j] - gravity[j])
         s.gust[i] = min(max(u, -p.gust_max), p.gust_max)
-
-
-@njit(cache=True)
-def _turned(R: Array, a: Array) -> Array:
-    b = np.empty(3)
-    for i in range(3):
-        b[i] = R[i, 0] * a[0] + R[i, 1] * a[1] + R[i, 2] * a[2]
-    return b
 
 
 @njit(cache=True)

@@ -66,7 +66,7 @@ def compare(z: Array, x: Array, P: Array, R: Array, s: Record) -> float:
 
 
 @njit(cache=True)
-def turned(theta: Array, R: Array, s: Record) -> float:
+def compare_attitude(theta: Array, R: Array, s: Record) -> float:
     """Likewise of an attitude that cannot be believed: one that flips once stays as it is.
 
     Args:
@@ -82,7 +82,7 @@ def turned(theta: Array, R: Array, s: Record) -> float:
 
 @njit(cache=True)
 def learn_scatter(place: float, attitude: float, upright: bool, s: Record) -> None:
-    """Learn from the distances of `compare` and, where the attitude is not believed, of `turned`; count those that are far off.
+    """Learn from the distances of `compare`, or of `compare_attitude` where the attitude is not believed; count those far off.
 
     Args:
         place: squared distance, 3 degrees of freedom.
