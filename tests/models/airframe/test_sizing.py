@@ -31,6 +31,17 @@ def test_a_load_and_a_wrong_belief_make_no_other_uav_of_what_is_built():
     assert wrong.limits.unexplained_n == pytest.approx(1.2 * 2.5)
 
 
+@pytest.mark.parametrize("mass", [0.384, 0.48, 0.576])
+def test_its_own_hover_may_ask_for_what_the_rotors_give_whatever_it_is_thought_to_weigh(mass):
+    """As large a share of it as the ceiling of the thrust that is commanded; 1.35 times too small a weight would let it sink."""
+    s = sized(load_scenario("landing", {"belief": {"uav": {"mass_kg": mass}}}))
+    assert s.onboard.hover.thrust_max_n == pytest.approx(
+        s.control.thrust.ceiling * 4.0 * s.rotors.max_thrust_n, rel=2e-3
+    )
+    strong = sized(load_scenario("landing", {"airframe": "crazyflie", "rotors": {"max_thrust_n": 0.25}}))
+    assert strong.onboard.hover.thrust_max_n == pytest.approx(0.94, rel=2e-3)
+
+
 def test_attitude_loops_have_the_same_poles():
     """k_p/J and k_d/J are the square of a frequency and a damping: of all UAVs of one rotor lag."""
     big, small = sized(other(7.0)), load_scenario("landing")

@@ -19,7 +19,7 @@ import numpy as np
 from armland.models.parameters import rotor_set, uav_parameters
 from armland.scenario import Scenario
 
-MASS_KG, LAG_S, RADIUS_M, RATE_HZ, RATING_N = 0.48, 0.05, 0.1, 200, 177.0
+MASS_KG, LAG_S, RADIUS_M, RATE_HZ, RATING_N, THRUST_N = 0.48, 0.05, 0.1, 200, 177.0, 4 * 1.86
 INERTIA = np.array([0.006, 0.007, 0.012])
 LEVER_M, REACH_M = np.array([0.0, 0.0, -0.06]), float(np.hypot(0.127, 0.127))
 
@@ -46,6 +46,8 @@ class Size(NamedTuple):
     """R."""
     rating: float
     """Of the magnet."""
+    thrust: float
+    """Largest of all rotors."""
     lever: float
     """ρ, vertical."""
     lower: float
@@ -75,6 +77,7 @@ def size_of(scenario: Scenario) -> Size:
         lag=_near(lag),
         radius=_near(scenario.rotors.radius_m / RADIUS_M),
         rating=_near(scenario.magnet.rating_n / RATING_N),
+        thrust=_near(rotors.number * scenario.rotors.max_thrust_n / THRUST_N),
         lever=_near(body.lever[2] / LEVER_M[2]),
         lower=float(LEVER_M[2] - body.lever[2]),
     )

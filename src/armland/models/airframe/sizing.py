@@ -108,7 +108,7 @@ RULES = (
     Rule("onboard.watched_n", lambda s: s.mass / s.number, WEIGHT),
     Rule("onboard.run_down_nps", _weight, WEIGHT),
     Rule("onboard.hover.lift_min_n", _weight, WEIGHT),
-    Rule("onboard.hover.thrust_max_n", _weight, WEIGHT),
+    Rule("onboard.hover.thrust_max_n", lambda s: s.thrust, "what its rotors can give, whatever it is thought to weigh"),
     Rule("link.torque_limit_nm", lambda s: s.mass * s.reach, "grows with what the rotors have left about hover"),
     Rule("control.thrust_n", _weight, "half the weight"),
     Rule("control.takeover_limit_n", _weight, WEIGHT),
@@ -172,7 +172,7 @@ RULES = (
 )
 """Key, ratio and reason of each."""
 
-FIRST = ("rotors.radius_m", "rotors.time_constant_s", "magnet.rating_n")
+FIRST = ("rotors.radius_m", "rotors.time_constant_s", "rotors.max_thrust_n", "magnet.rating_n")
 """Those that are applied before the others, which follow from them by `Size`."""
 
 
