@@ -77,7 +77,9 @@ def test_moment_is_told(pendulum):
     assert np.flatnonzero(insides(ticks, pendulum)["upper_in_floor"].where)[[0, -1]].tolist() == [2000, 2080]
 
 
-BASE = '<body name="arm/base" pos="0.5 0 0.4"><geom type="sphere" size="0.05" conaffinity="7"/></body><body name="uav/uav"'
+BASE = (
+    '<body name="arm/base" pos="0.5 0 0.4"><geom type="sphere" size="0.05" conaffinity="7"/></body><body name="uav/uav"'
+)
 
 
 def test_base_that_stands_in_the_cradle_is_seen_though_neither_moves(pendulum):
