@@ -77,6 +77,20 @@ def test_moment_is_told(pendulum):
     assert np.flatnonzero(insides(ticks, pendulum)["upper_in_floor"].where)[[0, -1]].tolist() == [2000, 2080]
 
 
+BASE = (
+    '<body name="arm/base" pos="0.5 0 0.4"><geom type="sphere" size="0.05" conaffinity="7"/></body><body name="uav/uav"'
+)
+
+
+def test_base_that_stands_in_the_cradle_is_seen_though_neither_moves(pendulum):
+    """Spheres of 50 and 60 mm, 100 mm apart; a base 20 mm lower is clear."""
+    inside = pendulum._replace(solids=PENDULUM.replace('<body name="uav/uav"', BASE))
+    found = insides(swung(0.0), inside)
+    assert list(found) == ["base_in_cradle"]
+    assert found["base_in_cradle"].depth.max() == pytest.approx(10.0, abs=1e-6)
+    assert insides(swung(0.0), inside._replace(solids=inside.solids.replace("0.5 0 0.4", "0.5 0 0.38"))) == {}
+
+
 @pytest.fixture(scope="module")
 def lwr():
     scene = build_scene(load_scenario("landing"), "free")

@@ -53,6 +53,14 @@ def test_first_guards_lead_from_the_self_test_to_the_goal_through_every_phase():
     assert way == [p.name for p in UNDER_WAY]
 
 
+def test_arm_that_grips_on_waits_until_it_feels_no_push():
+    felt = {"on": 0.7, "off": 0.5, "on_s": 0.0, "off_s": 0.0}
+    light = load_scenario("landing", {"estimation": {"contact": {"contact_n": felt}}})
+    assert PLAIN["grip"].guards[0].conditions[-1].threshold == "force_felt_n"
+    assert TAKEOFF.thresholds(light)["force_felt_n"] == 0.7
+    assert PLAIN["grip"].magnet == "on"
+
+
 def test_magnet_is_on_from_the_touch_until_the_hinge_is_free_of_force():
     on = [p.name for p in UNDER_WAY if p.magnet == "on"]
     names = [p.name for p in UNDER_WAY]

@@ -4,7 +4,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from armland.models.airframe.solids import add_cradle, add_uav
+from armland.models.airframe.solids import add_cradle, add_uav, stand_legs
+from armland.plant.scene.composition import build_scene
 from armland.scenario import load_scenario
 
 
@@ -30,6 +31,30 @@ def test_rails_are_the_slot_apart_and_their_upper_edge_is_the_bodys_origin(scena
     np.testing.assert_allclose(other[:, 1] - one[:, 1], gap + 2.0 * radius)
     np.testing.assert_allclose(one[:, 2] + radius, 0.0, atol=1e-12)
     np.testing.assert_allclose(np.ptp(one[:, 0]), scenario.cradle.length_m)
+
+
+@pytest.mark.parametrize("height", [0.2, 0.4, 0.9, 1.6])
+def test_legs_stand_where_the_plants_do_at_any_height(scenario, height):
+    """Ends of the legs of the planner's cradle and of the plant's, which is built apart from it; both reach the floor."""
+    catch = [*scenario.place.put_down_m[:2], height + 0.3]
+    down = [*catch[:2], height + 0.1]
+    moved = scenario.replaced({"place": {"put_down_m": down, "catch_m": catch}})
+    plant = build_scene(moved, "free").model
+    stand, origin = plant.body("stand"), plant.body("stand").pos.copy()
+    data = mujoco.MjData(plant)
+    mujoco.mj_kinematics(plant, data)
+    theirs = []
+    for g in range(stand.geomadr[0], stand.geomadr[0] + stand.geomnum[0]):
+        way = data.geom(g).xmat.reshape(3, 3)[:, 2] * plant.geom_size[g, 1]
+        theirs.append(sorted((data.geom(g).xpos + [-way, way]).round(6).tolist()))
+    spec = mujoco.MjSpec()
+    names = add_cradle(spec, moved)
+    spec.body("cradle").pos = origin
+    model = spec.compile()
+    stand_legs(model, moved.cradle, float(origin[2]))
+    ours = [sorted(lying(model, n).round(6).tolist()) for n in names if n.startswith("leg")]
+    np.testing.assert_allclose(sorted(ours), sorted(theirs), atol=2e-6)
+    assert min(p[2] for leg in ours for p in leg) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_uav_is_drawn_about_its_centre_of_mass(scenario):

@@ -98,6 +98,29 @@ def test_rail_stands_still_where_it_is_told(arm):
         assert any("rail" in note for note in file.chain.notes)
 
 
+DRIVING = """<link name="{0}"/><joint name="{1}" type="{2}"><parent link="{3}"/><child link="{0}"/><axis xyz="{4}"/>
+<limit lower="-3" upper="3" effort="500" velocity="1"/></joint>"""
+
+
+@pytest.mark.parametrize("order", ["xyt", "txy", "xty"])
+@pytest.mark.parametrize("count", [5, 6])
+def test_base_that_drives_stands_still_where_the_arm_is_enough_without_it(changed, order, count):
+    """Two ways and a turn about the vertical before a rail's arm of 7 joints; with two of those locked too few are left without it."""
+    axes = {"x": "1 0 0", "y": "0 1 0", "t": "0 0 1"}
+    links = [f"b{i}" for i in range(3)]
+    parts = "".join(
+        DRIVING.format(link, f"drive_{way}", "revolute" if way == "t" else "prismatic", before, axes[way])
+        for link, before, way in zip(links, ["floor", *links], order, strict=False)
+    )
+    fixed = '<link name="floor"/>' + parts
+    text = fixed + '<joint name="on" type="fixed"><parent link="b2"/><child link="base"/></joint></robot>'
+    lock = tuple((f"j{i}", 0.0) for i in range(1, 8 - count))
+    chain = read_arm(changed("ok.urdf", ("</robot>", text)), Asked(lock=lock)).chain
+    arm = [f"j{i}" for i in range(8 - count, 8)]
+    assert [j.name for j in chain.joints] == (arm if count == 6 else ["drive_t", *arm])
+    assert all(f"drive_{way}" in " ".join(chain.notes) for way in "xy")
+
+
 def test_gripper_is_named_with_where_it_stands(arm):
     (note,) = (n for n in arm("gripper.urdf").chain.notes if "not on the chain" in n)
     assert "grip_l = 0 m" in note

@@ -7,6 +7,7 @@ import pytest
 
 from armland.errors import ModelError
 from armland.models.arm import ArmModel
+from armland.models.arm_file.formats.urdf import GREY
 from armland.models.arm_file.reading import read_arm
 from armland.models.description import ASSETS
 
@@ -147,3 +148,13 @@ def test_changed_file_is_read_anew(changed):
 
     os.utime(path, ns=(1, 1))
     assert (before, read_arm(path).rows[0].torque.number) == (200.0, 150.0)
+
+
+def test_colour_that_nobody_can_read_is_no_reason_to_refuse_an_arm(changed):
+    shape = (
+        '<visual><geometry><box size="0.1 0.1 0.1"/></geometry><material><color rgba="0.1 0.2 0.3 0 1"/></material></visual>'
+        '<inertial><origin xyz="0 0 0.04"/><mass value="5"/>'
+    )
+    file = read_arm(changed("ok.urdf", ('<inertial><origin xyz="0 0 0.04"/><mass value="5"/>', shape)))
+    (seen,) = (s for link in file.chain.links for s in link.shapes if s.kind == "box")
+    np.testing.assert_allclose(seen.rgba, GREY)

@@ -28,7 +28,7 @@ from armland.scenario import Scenario
 TORQUE_SHARE = 0.9
 """Of the joints' limits, as `reach` leaves it."""
 
-FAR = np.array([0.0, 0.0, 99.0])
+FAR = np.array([99.0, 0.0, 1.0])
 """Where UAV and cradle are in no arm's way, m, D."""
 
 

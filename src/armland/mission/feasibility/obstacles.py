@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from armland.models.airframe.solids import OWN, add_cradle, add_links, add_tool, add_uav
+from armland.models.airframe.solids import OWN, add_cradle, add_links, add_tool, add_uav, stand_legs
 from armland.models.arm_file.spec import SHAPE
 from armland.models.arm_file.strength import poses
 from armland.models.description import EE_SITE, compile_spec
@@ -82,7 +82,7 @@ class Obstacles:
         self._joints, self.lever = bare.nq, uav_parameters(scenario).lever
         """Centre of mass to the pivot (3,), m, B."""
         above = self.lever[2] - scenario.skids.z_m + scenario.skids.radius_m
-        self._rails = np.array([0.0, 0.0, above])
+        self._rails, self._cradle = np.array([0.0, 0.0, above]), scenario.cradle
         others = {
             "the floor": (["floor"], FLOOR_M),
             "the cradle": (cradle, CRADLE_M),
@@ -94,9 +94,11 @@ class Obstacles:
 
     def put_cradle(self, put_down: Array, heading_deg: float) -> None:
         """Put the cradle where the UAV stands on it with its pivot at `put_down` (3,), m, D, its rails along the heading."""
-        half = 0.5 * np.deg2rad(heading_deg)
+        half, origin = 0.5 * np.deg2rad(heading_deg), put_down - self._rails
         at = self._model.body("cradle").mocapid[0]
-        self._data.mocap_pos[at] = put_down - self._rails
+        stand_legs(self._model, self._cradle, float(origin[2]))
+        self._size = self._sizes(self._ends)
+        self._data.mocap_pos[at] = origin
         self._data.mocap_quat[at] = [np.cos(half), 0.0, 0.0, np.sin(half)]
 
     def nearest(self, q: Array, pivot: Array, slack: float = 0.0, any_will_do: bool = False) -> Near:
@@ -179,7 +181,6 @@ class Obstacles:
         samples = poses(self._model)[:SAMPLED]
         far, ends = np.full((len(samples), len(pairs)), SAME_M), _ends(pairs)
         size = self._sizes(ends)
-        self.put_cradle(np.array([0.0, 0.0, 99.0]), 0.0)
         for row, q in zip(far, samples, strict=True):
             self._data.qpos[:] = q
             mujoco.mj_kinematics(self._model, self._data)

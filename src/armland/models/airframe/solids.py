@@ -11,6 +11,7 @@ from armland.models.description import compile_spec
 from armland.models.parameters import rotor_set
 from armland.rotations import Array
 from armland.scenario import Scenario
+from armland.scenario.gear import Cradle
 
 LINK_RADIUS_M, TOOL_RADIUS_M, BEAM_RADIUS_M = 0.06, 0.03, 0.015
 """Of the capsules along the links, around the tool, and of the beams that carry the rotors."""
@@ -20,9 +21,6 @@ MARKER_EDGE, MARKER_M = 10.0 / 8.0, 5e-4
 
 OWN = ("tool", "sensor")
 """Names of what armland mounts on the arm."""
-
-LEG_M = 0.6
-"""Length of the cradle's legs below its rails: they lean outwards."""
 
 
 def add_links(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[str]:
@@ -74,18 +72,37 @@ def add_uav(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:
 
 
 def add_cradle(spec: mujoco.MjSpec, scenario: Scenario) -> list[str]:
-    """The cradle as the mocap body `cradle`, its origin the middle of the slot at the rails' upper edge; names of its shapes."""
-    # The legs reach through the floor.
+    """The cradle as the mocap body `cradle`, its origin the middle of the slot at the rails' upper edge; names of its shapes.
+
+    Its legs are as for a height of 1 m above the floor: `stand_legs` gives them another.
+    """
     c, body, names = scenario.cradle, spec.worldbody.add_body(name="cradle", mocap=True), []
     x, across, z = 0.5 * c.length_m, 0.5 * c.gap_m + c.radius_m, -c.radius_m
     for side in (-1.0, 1.0):
         y = side * across
         names += [f"rail{side:+.0f}", f"leg{side:+.0f}a", f"leg{side:+.0f}b"]
         _add_capsule(body, np.array([[-x, y, z], [x, y, z]]), c.radius_m, names[-3])
-        for name, foot in zip(names[-2:], (-0.3 * x, 0.8 * x), strict=True):
-            leg = np.array([[foot, y, z], [foot, 1.5 * y, -LEG_M]])
+        for name, leg in zip(names[-2:], _legs(x, y, z, 1.0), strict=True):
             _add_capsule(body, leg, 0.7 * c.radius_m, name)
     return names
+
+
+def stand_legs(model: mujoco.MjModel, cradle: Cradle, height: float) -> None:
+    """Let the legs of a compiled `add_cradle` end on the floor, `height` m below the cradle's origin."""
+    x, across, z = 0.5 * cradle.length_m, 0.5 * cradle.gap_m + cradle.radius_m, -cradle.radius_m
+    for side in (-1.0, 1.0):
+        for name, leg in zip("ab", _legs(x, side * across, z, height), strict=True):
+            geom, way = model.geom(f"leg{side:+.0f}{name}").id, leg[1] - leg[0]
+            length = float(np.linalg.norm(way))
+            model.geom_pos[geom] = leg.mean(axis=0)
+            mujoco.mju_quatZ2Vec(model.geom_quat[geom], way / length)
+            model.geom_size[geom, 1] = 0.5 * length
+            model.geom_rbound[geom] = model.geom_size[geom, 0] + 0.5 * length
+
+
+def _legs(x: float, y: float, z: float, height: float) -> list[Array]:
+    # Of the rail at y: upper and lower end of each, leaning outwards as far whatever their height.
+    return [np.array([[foot, y, z], [foot, 1.5 * y, -height]]) for foot in (-0.3 * x, 0.8 * x)]
 
 
 def _add_capsule(body: mujoco.MjsBody, ends: Array, radius: float, name: str) -> None:

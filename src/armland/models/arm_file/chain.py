@@ -8,7 +8,7 @@ import numpy as np
 from armland.errors import ModelError
 from armland.models.arm_file.inertia import NOTHING, lumped
 from armland.models.arm_file.tip import NEEDED, Tip, tip
-from armland.models.arm_file.tree import Body, Inertial, Joint, Pose, Shape, Tree, here
+from armland.models.arm_file.tree import HINGE, SLIDE, Body, Inertial, Joint, Pose, Shape, Tree, here
 from armland.rotations import matrix
 
 WEIGHTY = 0.05
@@ -91,15 +91,22 @@ def _driven(tree: Tree, way: list[int], lock: dict[str, float], end: Tip) -> set
             f"choose an end effector before it, or lock it: --lock {follower.name}=0"
         )
     free = [j for j in on if j.name not in lock]
-    hinges = [j for j in free if j.kind == "hinge"]
-    # Rails and lifts stand still where the arm has enough without them.
-    chosen = hinges if len(hinges) >= NEEDED else free
+    hinges = [j for j in free if j.kind == HINGE]
+    arm = [j for j in hinges if j not in _mobile(on)]
+    # Rails, lifts and a base that drives stand still where the arm has enough without them.
+    chosen = next((few for few in (arm, hinges) if len(few) >= NEEDED), free)
     if len(chosen) < NEEDED:
         raise ModelError(
             f"{tree.what} has {len(chosen)} joints on the way to {end.label!r}; the end effector needs at least {NEEDED} to hold a "
             "position and an orientation"
         )
     return {j.name for j in chosen}
+
+
+def _mobile(on: list[Joint]) -> list[Joint]:
+    # Joints by which a base drives over the floor: two ways and a turn, in any order, before all others.
+    first = on[:3]
+    return first if sorted(j.kind for j in first) == [HINGE, SLIDE, SLIDE] else []
 
 
 def _rest(tree: Tree, joint: Joint, lock: dict[str, float]) -> float:

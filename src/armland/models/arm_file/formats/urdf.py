@@ -222,13 +222,21 @@ def _shape(part: ET.Element, where: str) -> list[Shape]:
     geometry = part.find("geometry") if part.tag in ("visual", "collision") else None
     if geometry is None:
         return []
-    rgba = np.array(numbers(_get(part.find("material") or part, "color", "rgba"), 4, GREY, f"{where}: colour"))
+    rgba = _colour(_get(part.find("material") or part, "color", "rgba"))
     touches, at = part.tag == "collision", _pose(part.find("origin"), where)
     for solid in geometry:
         half = _size(solid, where)
         if half is not None and half[1].max() > 0.0:
             return [Shape(half[0], half[1], at, rgba, touches=touches)]
     return []
+
+
+def _colour(text: str | None) -> np.ndarray:
+    # Nothing depends on it: one that nobody can read is grey.
+    try:
+        return np.array(numbers(text, 4, GREY, "colour"))
+    except ModelError:
+        return np.array(GREY)
 
 
 def _size(solid: ET.Element, where: str) -> tuple[str, np.ndarray] | None:
