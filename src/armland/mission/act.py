@@ -25,6 +25,7 @@ from armland.control.laws.table import told_layout as law_told
 from armland.linking import MATRIX, head, linked, named
 from armland.mission.estimate import RING
 from armland.mission.load import observe
+from armland.mission.reference import riding
 from armland.mission.reference.moves import BALANCE, BRAKE
 from armland.mission.uav import HINGED, command_uav
 from armland.mission.uav import told_layout as uav_told
@@ -78,6 +79,7 @@ def kept_layout() -> np.dtype:
             ("anchor", "f8", (3,)),  # m, where the centre of mass was when it began to fly on [D]
             ("cruising", "i8"),  # tick of that; 0: not yet
             ("q_d", "f8", (4,)),  # set-point, D<-B
+            ("ride", riding.kept_layout()),
             ("law", law_kept()),
         ]
     )
