@@ -27,6 +27,7 @@ from armland.mission.estimate import RING
 from armland.mission.load import observe
 from armland.mission.reference import riding
 from armland.mission.reference.moves import BALANCE, BRAKE
+from armland.mission.reference.riding import ride
 from armland.mission.uav import HINGED, command_uav
 from armland.mission.uav import told_layout as uav_told
 from armland.records import Record
@@ -101,6 +102,8 @@ def act(b: Record, path: Array) -> None:
         prove(row.held == 1, b)
     acceleration = hold(row, b, path) if row.held else move_free(b)
     torque_arm(row.arm, acceleration, b)
+    if b.environment.moves:
+        ride(b.told.act.uav.station, b.told.act.uav.rides, b.told.act.uav.tick_s, b.environment, s.ride)
     command_uav(row, b.kept.estimate.filter.align.quat, b)
     s.magnet = c.magnet
     b.kept.estimate.thrust_log[m.tick % RING] = s.thrust

@@ -26,7 +26,6 @@ from armland.mission.reference.guided import (
     learn_trim,
     take_over,
 )
-from armland.mission.reference.riding import ride
 from armland.mission.reference.view import in_view, seek
 from armland.mission.reference.view import told_layout as view_told
 from armland.mission.table.phases import LINK, UAV
@@ -104,8 +103,6 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     tick, e, c = b.tick.measurement.tick, b.tick.estimate, b.tick.command
     p, s, what = b.told.act.uav, b.kept.act, row.uav
     c.uav_mode = MODES[row.link]
-    if b.environment.moves:
-        ride(p.station, p.rides, p.tick_s, b.environment, s.ride)
     learn_trim(b)
     blind = _unseen(e, b.kept.estimate, p) and (what == STATION or (what == CRUISE and not p.fly_on))
     if what == AUTONOMOUS or blind:

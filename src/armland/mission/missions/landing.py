@@ -160,5 +160,6 @@ LANDING = Mission(
 tests the grip, then the thrust ramps down while the arm takes the weight over. The arm carries the UAV above the cradle and sets
 it down; the rotors stop when the rails carry, the magnet opens when the hinge is free of force, and the arm draws back.
 A capture that is missed is tried again `bounds.retries` times. A UAV that leaves the camera's view before is looked
-for as long as `limits.search_ms`. Where wind or a deck that moves is foretold the ground guides the UAV from the first sight on, through the self-test.""",
+for as long as `limits.search_ms`. Where wind or a deck that moves is foretold the ground guides the UAV from the first
+sight on, through the self-test.""",
 )

@@ -7,8 +7,8 @@
 | d, ḋ, d̈ | `ride.aside`, `.aside_v`, `.aside_a` (3,): δ as seen from the deck | m, m/s, m/s², D |
 | λ | `told.rides` | rad/s |
 
-No UAV follows what is faster than its attitude: with the deck's own acceleration fed forward it leans by 10 degrees, late, where the deck
-rolls by one in half a second. What is followed is the station behind a low pass without an error of place at a constant speed,
+No UAV follows what is faster than its attitude: with the deck's own acceleration fed forward it leans by 10 degrees, late, where
+the deck rolls by one in half a second. What is followed is the station behind a low pass without an error of place at a constant speed,
 
     ā˙ = −λ³ δ + 3λ² (v_s − v̄) − 3λ ā,  δ˙ = v̄ − v_s,   p̄/p_s = (3λ² s + λ³)/(s + λ)³            (K.2)
 

@@ -49,7 +49,7 @@ def settle_solver(model: mujoco.MjModel) -> None:
     """Let MuJoCo's solver go on until its residual is as small for the inertia of all but the deck as on land it is for that of all.
 
     MuJoCo measures it by the mean inertia, of which the deck is nearly all. By that it stops while the hinge of a UAV on the cradle is
-    still 1 N and more off, in another way at each tick; to go on costs fewer iterations, since each tick begins where the one before ended.
+    1 N and more off, in another way at each tick; to go on costs fewer iterations, since each tick begins where the one before ended.
     """
     if not moves(model):
         return
