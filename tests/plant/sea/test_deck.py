@@ -111,7 +111,7 @@ def test_uav_standing_on_the_cradle_rides_along(waiting):
 def test_hinge_of_a_uav_on_the_cradle_is_as_quiet_as_on_land(monkeypatch, settles):
     """The arm holds the UAV by the magnet on the cradle, in waves of 1 cm: by tick the hinge's upward force hardly changes.
 
-    Without the solver's tolerance for what is on the deck all of it jumps by up to 8 N: no landing ends.
+    Without the solver's tolerance for what is on the deck all of it jumps by up to 8 N: the unloading waits in vain.
     """
     if not settles:
         monkeypatch.setattr(composition, "settle_solver", lambda model: None)
