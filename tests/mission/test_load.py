@@ -235,6 +235,22 @@ def test_nod_tells_the_gain_of_the_force_sensor_whatever_its_bias(bench, gain):
     np.testing.assert_allclose(nodded(bench, gain, bias=(3.0, -2.0, 1.0)), gain, atol=1e-6)
 
 
+@pytest.mark.parametrize("known", [1, 0])
+def test_nod_on_a_moving_deck_weighs_the_tool_and_not_the_deck(bench, known):
+    """The deck surges and heaves with the nod's own period: unknown, its acceleration would count as the tool's."""
+    rng, mass = np.random.default_rng(1), bench.told["estimate"]["wrench"]["mass"][0]
+    bench.board["environment"]["moves"] = known
+    for k in range(500):
+        swing = np.sin(2.0 * np.pi * k / 500)
+        a, deck = np.array([1.5, 1.2, 1.8]) * swing, np.array([0.9, -0.8, 1.1]) * swing
+        bench.kept["refer"]["a"], bench.board["environment"]["base_a"] = a, deck
+        bench.m["wrench"][0, :3] = bench.board["arm"]["rotation"][0].T @ (mass * (a + deck + [0.0, 0.0, 9.81]))
+        bench.m["wrench"][0, :3] += 0.01 * rng.standard_normal(3)
+        feel_nod(bench.m[0], bench.b)
+    apart = np.abs(bench.kept["estimate"]["nod"]["gain"][0] - 1.0)
+    assert (apart < 0.02).all() if known else (apart > 0.5).all()
+
+
 @pytest.mark.parametrize("share", [1.0, 0.4, 0.0])
 def test_nod_tells_the_share_of_itself_that_the_arm_made(bench, share):
     for k in range(500):

@@ -385,6 +385,12 @@ def hovering_alone(bench, seconds, gives=1.0, lift=(0.0, 0.0, 1.0), sees=True):
         as_uav(bench, "autonomous")
 
 
+def test_trim_of_a_uav_that_hovers_in_w_knows_nothing_of_the_decks_acceleration(bench):
+    bench.board["environment"]["moves"], bench.board["environment"]["base_a"] = 1, [0.4, -0.3, 0.7]
+    hovering_alone(bench, 1.0, 1.0)
+    np.testing.assert_allclose(bench.kept["act"]["trim"][0], 0.0, atol=1e-9)
+
+
 @pytest.mark.parametrize("gives", [0.8, 0.9, 1.0, 1.1])
 def test_thrust_that_a_uav_asks_for_by_itself_tells_what_its_rotors_really_give(bench, gives):
     """A UAV that hovers asks for weight/gives: so much carries the weight, whatever the belief says."""

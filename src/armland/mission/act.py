@@ -25,7 +25,9 @@ from armland.control.laws.table import told_layout as law_told
 from armland.linking import MATRIX, head, linked, named
 from armland.mission.estimate import RING
 from armland.mission.load import observe
+from armland.mission.reference import riding
 from armland.mission.reference.moves import BALANCE, BRAKE
+from armland.mission.reference.riding import ride
 from armland.mission.uav import HINGED, command_uav
 from armland.mission.uav import told_layout as uav_told
 from armland.records import Record
@@ -79,6 +81,7 @@ def kept_layout() -> np.dtype:
             ("anchor", "f8", (3,)),  # m, where the centre of mass was when it began to fly on [D]
             ("cruising", "i8"),  # tick of that; 0: not yet
             ("q_d", "f8", (4,)),  # set-point, D<-B
+            ("ride", riding.kept_layout()),
             ("law", law_kept()),
         ]
     )
@@ -100,6 +103,8 @@ def act(b: Record, path: Array) -> None:
         prove(row.held == 1, b)
     acceleration = hold(row, b, path) if row.held else move_free(b)
     torque_arm(row.arm, acceleration, b)
+    if b.environment.moves:
+        ride(b.told.act.uav.station, b.told.act.uav.rides, b.told.act.uav.tick_s, b.environment, s.ride)
     command_uav(row, b.kept.estimate.filter.align.quat, b)
     s.magnet = c.magnet
     b.kept.estimate.thrust_log[m.tick % RING] = s.thrust

@@ -127,11 +127,12 @@ def fill_signals(elapsed: float, b: Record) -> None:
         b: board.
     """
     m, e, p, s = b.tick.measurement, b.tick.estimate, b.told.decide, b.kept.decide
+    ride = b.kept.act.ride
     refer, act, out = b.kept.refer, b.kept.act, b.kept.decide.signals
     apart, speed, relative, arm, retreat, force = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(3):
-        apart += (e.plate[i] - p.station[i]) ** 2
-        speed += e.plate_v[i] ** 2
+        apart += (e.plate[i] - p.station[i] - ride.aside[i]) ** 2
+        speed += (e.plate_v[i] - ride.aside_v[i]) ** 2
         relative += (e.plate_v[i] - e.v[i]) ** 2
         arm += (refer.r[i] - e.r[i]) ** 2
         retreat += (e.r[i] - s.grip[i]) ** 2

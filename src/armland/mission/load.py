@@ -73,7 +73,8 @@ def feel_nod(m: Record, b: Record) -> None:
     and the arm's speed with the one asked for.
 
     A constant bias does not change the first. A dead sensor gives 0, a reversed one −1. An arm that sticks makes part of the nod, and
-    the tool's inertia force is as small.
+    the tool's inertia force is as small. What the deck's motion makes of the tool's weight, −m_t γ, is taken off before: with 0.3 m/s²
+    it is a third of what the nod makes.
 
     Args:
         m: measurement.
@@ -82,6 +83,10 @@ def feel_nod(m: Record, b: Record) -> None:
     n, mass = b.kept.estimate.nod, b.told.estimate.wrench.mass
     force, a, v, w = turned(b.arm.rotation, m.wrench[:3]), b.kept.refer.a, b.kept.refer.v, b.tick.estimate.v
     n.count += 1
+    if b.environment.moves:
+        gravity = apparent_gravity(b.environment, b.tick.estimate.r, v)
+        for i in range(3):
+            force[i] += mass * gravity[i]
     for i in range(3):
         n.a[i] += a[i]
         n.f[i] += force[i]

@@ -56,6 +56,9 @@ that is soon."""
 FELT = 2.0
 """Of the strongest gust's acceleration: what the UAV's accelerometers may feel beyond the model. The arm pulls as hard."""
 
+RIDES_RAD_S = 8.0
+"""Of the deck's motion with which a UAV goes along: a hull's is slower, and faster is what no attitude of a UAV follows."""
+
 BALANCE_AGE_S = 0.05
 """Oldest attitude that can be balanced by."""
 
@@ -218,7 +221,7 @@ def _uav(p: Records, t: Telling) -> None:
     p["reckoned"], p["fades"] = (FELT_S, FELT_S) if wind.mean > 0.0 else (RECKONED_S, SEEN_S)
     p["astray"] = ASTRAY_M if wind.mean > 0.0 else np.inf
     p["leant"] = max(LEANT_MPS2, drag * wind.gust(STRONGEST))
-    p["coming_max"], p["vertical"] = COMING_MPS2, station.vertical
+    p["rides"], p["coming_max"], p["vertical"] = RIDES_RAD_S, COMING_MPS2, station.vertical
     p["tilt_max"], p["gust_share"], p["gust_max"] = station.tilt_max_rad, station.gust_share, station.gust_max_mps2
     p["sight"] = view.told(s, t.flyer.body.lever, wind.lean(drag / t.flyer.gravity, GUST))
 

@@ -86,6 +86,7 @@ def told_layout() -> np.dtype:
             ("gust_share", "f8"),  # of the disturbance in the plate filter
             ("gust_max", "f8"),  # m/s²
             ("coming_max", "f8"),  # m/s², of the acceleration that is carried on over the uplink's delay
+            ("rides", "f8"),  # rad/s, of the deck's motion with which the UAV goes along
             ("sight", view_told()),
         ]
     )

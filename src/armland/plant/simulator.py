@@ -23,7 +23,6 @@ from armland.plant.faults import table as faults
 from armland.plant.noise import BLOCK, Noise, NoiseSource
 from armland.plant.pictures import Photographer, Pictures
 from armland.plant.scene.composition import Scene, build_scene
-from armland.plant.scene.deck import settle_solver
 from armland.plant.sea.timed import on_deck, timed_deck, velocity_on_deck
 from armland.plant.wind.limits import lift_gain, steady_wind
 from armland.plant.wind.timed import timed_wind
@@ -84,7 +83,6 @@ class Simulator:
         self.deviations = drawn(self.scenario, self.scene.joints)
         if self.deviations:
             self.scene = deviate_bodies(self.deviations, self.scenario, self.scene)
-            settle_solver(self.scene.model)
             deviate_devices(self.deviations, self.scenario, self.scene, self.world["told"])
 
     @property

@@ -75,6 +75,9 @@ class Forecast(Section):
     wind_mps: Annotated[float, between(0.0, 40.0)] | None = key(
         None, "mean wind at 20 ft that the controller is told, W20; air.wind_mps if absent, and never its direction"
     )
+    deck_moves: bool | None = key(
+        None, "whether the controller is told that the deck moves; as the sea has it if absent"
+    )
 
 
 class Air(Section):

@@ -139,6 +139,11 @@ class Scenario(Section):
         return self.air.wind_mps if self.forecast.wind_mps is None else self.forecast.wind_mps
 
     @property
+    def foretold_deck(self) -> bool:
+        """Whether the controller is told that the deck moves; never how."""
+        return self.sea.moves if self.forecast.deck_moves is None else self.forecast.deck_moves
+
+    @property
     def sized(self) -> bool:
         """Whether the rules of `models.airframe.sizing` have been applied."""
         return self._sized
@@ -178,7 +183,7 @@ class Scenario(Section):
 
     def _belief(self) -> str:
         data = json.loads(self.model_dump_json(exclude={*PLANT_ONLY, "belief"}))
-        data["forecast"]["wind_mps"] = self.foretold_mps
+        data["forecast"]["wind_mps"], data["forecast"]["deck_moves"] = self.foretold_mps, self.foretold_deck
         update(data, self.belief)
         return json.dumps(data)
 

@@ -39,3 +39,14 @@ def test_capture_that_is_missed_is_tried_again_until_it_has_been_too_often(phase
     targets = [g.target for g in phases["miss"].guards]
     assert targets == ["abort", "guide"]
     assert phases["miss"].guards[0].conditions[0].threshold == "retries_allowed"
+
+
+@pytest.mark.parametrize(
+    ("sea", "told", "first"), [("ss2", None, "find"), ("calm", None, "self_test"), ("ss2", False, "self_test")]
+)
+def test_uav_is_guided_from_the_first_sight_on_where_the_deck_is_said_to_move(sea, told, first):
+    believed = load_scenario("landing", {"sea": {"state": sea}, "forecast": {"deck_moves": told}}).believed()
+    assert not believed.sea.moves
+    found = {p.name: p for p in MISSIONS["landing"].phases(believed)}
+    assert next(iter(found)) == first
+    assert found["self_test"].uav == ("station" if first == "find" else "autonomous")

@@ -90,12 +90,15 @@ FIND = Phase(
 
 
 def _phases(scenario: Scenario) -> tuple[Phase, ...]:
-    # In wind a UAV that hovers by itself does not stay in view for as long as a self-test: it is guided from the first sight on.
-    if not scenario.forecast.wind_mps:
+    # In wind, and above a deck that moves, a UAV that hovers by itself does not stay in view for as long as a self-test: it is guided
+    # from the first sight on.
+    windy, moves = bool(scenario.forecast.wind_mps), bool(scenario.forecast.deck_moves)
+    if not windy and not moves:
         return PHASES
     first, *rest = PHASES
-    # What the rotors make of a command changes until the cradle is near.
-    rest = [p._replace(observe=True) if p.name == "set_down" else p for p in rest]
+    if windy:
+        # What the rotors make of a command changes until the cradle is near.
+        rest = [p._replace(observe=True) if p.name == "set_down" else p for p in rest]
     return (FIND, first._replace(uav="station", seeks=True, timeout_s=20.0), *rest)
 
 
@@ -157,5 +160,6 @@ LANDING = Mission(
 tests the grip, then the thrust ramps down while the arm takes the weight over. The arm carries the UAV above the cradle and sets
 it down; the rotors stop when the rails carry, the magnet opens when the hinge is free of force, and the arm draws back.
 A capture that is missed is tried again `bounds.retries` times. A UAV that leaves the camera's view before is looked
-for as long as `limits.search_ms`. Where wind is foretold the ground guides the UAV from the first sight on, through the self-test.""",
+for as long as `limits.search_ms`. Where wind or a deck that moves is foretold the ground guides the UAV from the first
+sight on, through the self-test.""",
 )

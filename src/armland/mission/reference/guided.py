@@ -53,7 +53,8 @@ def learn_trim(b: Record) -> None:
         total += m.uav_rotors[i]
     if total < LEAST_SHARE * p.weight:
         return
-    R, gravity = matrix(e.quat), apparent_gravity(b.environment, e.plate, e.plate_v)
+    # By itself it hovers in W: what the deck does is none of its doing.
+    R, gravity = matrix(e.quat), b.environment.gravity
     gain = min((m.uav_tick - s.trimmed) * p.tick_s / TRIM_S, 1.0) if s.trimmed > 0 else 1.0
     for i in range(3):
         s.trim[i] += gain * (total / p.mass * R[i, 2] + gravity[i] - s.trim[i])
@@ -162,7 +163,7 @@ def cruise(tick: int, b: Record) -> None:
         s.cruising = tick
         lever = turned(matrix(e.quat), p.lever)
         for i in range(3):
-            s.anchor[i] = e.plate[i] - lever[i]
+            s.anchor[i] = e.plate[i] - lever[i] - s.ride.aside[i]
     since, still, place, moving = (tick - s.cruising) * p.tick_s, np.zeros(3), np.empty(3), np.empty(3)
     for i in range(3):
         place[i], moving[i] = s.anchor[i] + p.launch[i] * since, p.launch[i]
@@ -185,7 +186,7 @@ def lean_against_drag(v: Array, p: Record, s: Record) -> None:
 
 @njit(cache=True)
 def keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
-    """Keep the UAV's centre of mass at `place` − `lever`, which moves.
+    """Keep the UAV's centre of mass at `place` − `lever`, which moves; on a deck that moves beside it, see `riding`.
 
     Args:
         place: (3,), m, D.
@@ -197,10 +198,11 @@ def keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
     R, fade = matrix(e.quat), np.exp(-max(e.plate_age - p.fades, 0.0) / FADE_S)
     arm, swing = turned(R, p.lever), turned(R, cross(e.omega, p.lever))
     wanted, position, velocity, wind, held = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    going = moving + s.ride.aside_v
     for i in range(3):
         held[i], wanted[i], position[i], velocity[i] = (
             s.integral[i],
-            place[i] - lever[i],
+            place[i] - lever[i] + s.ride.aside[i],
             e.plate[i] - arm[i],
             e.plate_v[i] - swing[i],
         )
@@ -209,7 +211,8 @@ def keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
     # Where the UAV will be, and where it shall be, when the command acts.
     ahead = b.kept.estimate.uplink * p.tick_s
     for i in range(3):
-        wanted[i] += moving[i] * ahead
+        wanted[i] += (going[i] + 0.5 * s.ride.aside_a[i] * ahead) * ahead
+        going[i] += s.ride.aside_a[i] * ahead
         coming = min(max(e.plate_a[i], -p.coming_max), p.coming_max)
         position[i] += (velocity[i] + 0.5 * coming * ahead) * ahead
         velocity[i] += coming * ahead
@@ -217,7 +220,7 @@ def keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
     rates = (p.k_position, p.k_velocity, p.k_integral, p.speed_max, p.integral_max, p.tilt_max)
     gains = StationGains(p.mass, period, *rates, p.thrust_min, p.thrust_max, p.vertical)
     gravity = apparent_gravity(b.environment, position, velocity)
-    reference = StationReference(wanted, moving, np.zeros(3), p.heading)
+    reference = StationReference(wanted, going, s.ride.aside_a.copy(), p.heading)
     thrust, q_d, integral = keep_station(position, velocity, e.quat, reference, wind, gains, held, gravity)
     s.thrust = thrust
     for i in range(3):

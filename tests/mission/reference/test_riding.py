@@ -1,0 +1,55 @@
+"""What a UAV above a moving deck follows (K.2): the slow part of the station's motion, whatever the deck's velocity is biased by."""
+
+import numpy as np
+import pytest
+from scipy.signal import lsim
+from scipy.spatial.transform import Rotation
+
+from armland.mission.reference.riding import kept_layout, ride
+from armland.models.environment import on_land
+
+RATE, TICK_S, STATION = 8.0, 1e-3, np.array([0.6, 0.1, 0.9])
+
+
+def ridden(omega, seconds, bias=0.0, heave=0.1, roll=0.0):
+    """Ride for `seconds` on a deck that heaves by `heave`, m, and rolls by `roll`, rad, at `omega`, rad/s; all of it by tick."""
+    s, e, rows = np.zeros(1, kept_layout()), on_land(), []
+    e["moves"] = 1
+    for t in np.arange(0.0, seconds, TICK_S):
+        swing, rate, push = np.sin(omega * t), omega * np.cos(omega * t), -(omega**2) * np.sin(omega * t)
+        R = Rotation.from_rotvec([roll * swing, 0.0, 0.0])
+        e["base_quat"], e["gravity"] = R.as_quat(scalar_first=True), R.inv().apply([0.0, 0.0, -9.81])
+        e["base_omega"], e["base_alpha"] = [roll * rate, 0.0, 0.0], [roll * push, 0.0, 0.0]
+        e["base_v"], e["base_a"] = R.inv().apply([bias, 0.0, heave * rate]), R.inv().apply([0.0, 0.0, heave * push])
+        ride(STATION, RATE, TICK_S, e[0], s[0])
+        place = R.apply(STATION) + [0.0, 0.0, heave * swing]
+        rows.append(np.concatenate([place, s["apart"][0], s["aside"][0], s["aside_v"][0], s["aside_a"][0], s["a"][0]]))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("omega", [1.0, 20.0])
+def test_k2_follows_the_low_pass_of_the_stations_motion(omega):
+    """The oracle is scipy's solution of (3λ²s + λ³)/(s + λ)³ on the station's height: slow heave is followed, fast heave is not."""
+    rows = ridden(omega, 12.0)
+    height, followed = rows[:, 2] - STATION[2], rows[:, 2] - STATION[2] + rows[:, 5]
+    t = np.arange(len(height)) * TICK_S
+    _, expected, _ = lsim(([3.0 * RATE**2, RATE**3], np.poly([-RATE] * 3)), height, t)
+    late = t > 6.0
+    # Reckoned by tick it is within what the deck moves in one and a half.
+    np.testing.assert_allclose(followed[late], expected[late], atol=1.5 * TICK_S * omega * 0.1)
+    left = np.ptp(followed[late]) / np.ptp(height[late])
+    assert left > 0.95 if omega < RATE else left < 0.5
+
+
+def test_biased_velocity_moves_nothing():
+    rows = ridden(1.0, 8.0, bias=0.02, heave=0.0)
+    np.testing.assert_allclose(rows[-1, 3:6], 0.0, atol=1e-4)
+
+
+def test_seen_from_the_deck_the_motion_is_that_of_what_is_followed():
+    """ḋ and d̈ against differences of d on a deck that rolls and heaves; the inertial acceleration in K.1, d̈ − γ + g, is Rᵀā."""
+    rows = ridden(3.0, 6.0, roll=0.05)
+    aside, v, a = rows[3000:, 6:9], rows[3000:, 9:12], rows[3000:, 12:15]
+    np.testing.assert_allclose(np.gradient(aside, TICK_S, axis=0)[5:-5], v[5:-5], atol=1e-3)
+    np.testing.assert_allclose(np.gradient(v, TICK_S, axis=0)[5:-5], a[5:-5], atol=5e-3)
+    assert np.abs(a).max() > 0.05
