@@ -63,6 +63,10 @@ def differing(a, b):
     }
 
 
+SET_UP = ("run_down", "watched", "lift_min", "thrust_max", "kp", "kd", "k_angle", "k_rate", "k_change", "most_leaning")
+"""What the UAV's own autopilot is set up with follows by rules from what is believed of the UAV: `airframe.sizing`."""
+
+
 class Fingerprint:
     """All that the controller of a flight is built of, and all that its plant is built of."""
 
@@ -74,7 +78,10 @@ class Fingerprint:
         self.controller = {"board": np.frombuffer(flight.controller.board.tobytes(), np.uint8)}
         self.controller |= {name: np.asarray(getattr(plan, name)) for name in ("path", "home", "ticks", "watch")}
         self.controller |= {f"arm.{k}": v for k, v in arrays(plan.arm.model).items()}
-        self.plant = {"world": np.frombuffer(simulator.world.tobytes(), np.uint8)}
+        world = simulator.world.copy()
+        for name in SET_UP:
+            world["told"]["onboard"][name] = 0.0
+        self.plant = {"world": np.frombuffer(world.tobytes(), np.uint8)}
         self.plant |= {f"scene.{k}": v for k, v in arrays(simulator.scene.model).items()}
         # The arm starts where its controller wants it: that is no part of the hardware.
         data = mujoco.MjData(simulator.scene.model)

@@ -25,7 +25,6 @@ from armland.mission.reference.guided import (
     learn_shortfall,
     learn_trim,
     take_over,
-    take_over_freed,
 )
 from armland.mission.reference.view import in_view, seek
 from armland.mission.reference.view import told_layout as view_told
@@ -114,11 +113,7 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
             seek(s.alone * p.tick_s, e, b.kept.estimate.seen == 1, p, s)
     elif what == STATION:
         keep_shortfall(p, s)
-        if s.alone > 0:
-            take_over(b.kept.estimate.plate.bias, p, s)
-        elif s.freed:
-            take_over_freed(b.kept.estimate.plate.bias, p, s)
-        s.freed = 0
+        take_over(b.kept.estimate.plate.bias, p, s)
         if tick % p.period == 0:
             keep(in_view(e, row.seeks == 1, p, s), p.lever, np.zeros(3), b)
     elif what == CRUISE:

@@ -102,6 +102,13 @@ def test_what_the_user_sets_is_kept():
     assert changed.bounds.pull_test_n == 2.5
 
 
+def test_skids_and_marker_are_as_far_below_the_pivot_whatever_the_lever():
+    """The cradle, the arm below it and the camera's distance stay what they are."""
+    own, long = (sized(load_scenario("landing", o)) for o in ({}, {"uav": {"lever_m": [0.0, 0.0, -0.2]}}))
+    for place in (lambda s: s.skids.z_m, lambda s: s.camera.marker_m[2]):
+        assert place(long) + 0.2 == pytest.approx(place(own) + 0.06)
+
+
 def test_once_is_enough():
     once = sized(other(5.0))
     assert sized(once.with_seed(7)).limits == once.limits

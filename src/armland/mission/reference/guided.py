@@ -106,36 +106,31 @@ def keep_shortfall(p: Record, s: Record) -> None:
 
 @njit(cache=True)
 def take_over(bias: Array, p: Record, s: Record) -> None:
-    """Let the station keeping begin where the UAV's own hover ends.
+    """Let the station keeping begin where the UAV's own hover ends, or where the hinge was freed of force.
 
-    What the pose filter knows of the wind is cancelled beside the integral, so the integral begins without it.
+    What the pose filter knows of the wind is cancelled beside the integral, so the integral begins without it. What leans and lifts
+    the UAV on the hinge holds against the wind alone, and the filter has learnt that wind meanwhile, too: a UAV that leans and does
+    not move. Counted twice, it would fly off against the wind.
 
     Args:
         bias: disturbance (3,) of the pose filter, m/s², D.
         p: what commanding the UAV is told.
-        s: what acting keeps; `integral` is written.
+        s: what acting keeps; `integral` is written, in the first tick of the station keeping alone.
     """
-    if s.trimmed > 0:
-        for i in range(3):
-            s.integral[i] = min(max(s.trim[i] + _gust(bias, i, p), -p.integral_max), p.integral_max)
+    if s.alone > 0 and s.trimmed > 0:
+        _begin(s.trim, bias, p, s)
         if p.sight.leans:
             s.hovered[0], s.hovered[1] = s.trim[0], s.trim[1]
+    elif s.alone == 0 and s.freed:
+        _begin(s.integral, bias, p, s)
+    s.freed = 0
 
 
 @njit(cache=True)
-def take_over_freed(bias: Array, p: Record, s: Record) -> None:
-    """Let the station keeping begin where the hinge was freed of force.
-
-    What leans and lifts the UAV there holds against the wind alone. The pose filter has learnt that wind meanwhile, too: a UAV that
-    leans and does not move. Counted twice, it would fly off against the wind.
-
-    Args:
-        bias: disturbance (3,) of the pose filter, m/s², D.
-        p: what commanding the UAV is told.
-        s: what acting keeps; `integral`, until now that of the balance, is written.
-    """
+def _begin(held: Array, bias: Array, p: Record, s: Record) -> None:
+    # The integral with which the command is the one that holds by `held` (3,), m/s², D.
     for i in range(3):
-        s.integral[i] = min(max(s.integral[i] + _gust(bias, i, p), -p.integral_max), p.integral_max)
+        s.integral[i] = min(max(held[i] + _gust(bias, i, p), -p.integral_max), p.integral_max)
 
 
 @njit(cache=True)

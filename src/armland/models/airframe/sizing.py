@@ -188,6 +188,7 @@ def sized(scenario: Scenario) -> Scenario:
     scenario = scenario.resolved(_told(scenario))
     for first in (True, False):
         scenario = scenario.resolved(_changes(scenario, [r for r in RULES if (r.key in FIRST) is first]))
+    scenario = scenario.resolved(_shifted(scenario))
     return scenario.resolved(_in_wind(scenario)) if scenario.foretold_mps > 0.0 else scenario
 
 
@@ -230,6 +231,12 @@ def _changes(scenario: Scenario, rules: list[Rule]) -> dict[str, Any]:
             [v * f for v, f in zip(value, factor, strict=True)] if isinstance(factor, tuple) else _times(value, factor)
         )
         update(out, nested(rule.key, made))
+    return out
+
+
+def _shifted(scenario: Scenario) -> dict[str, Any]:
+    # What is moved, and not multiplied: once, or it would be moved twice as far.
+    real, believed, out = size_of(scenario), size_of(scenario.believed()), dict[str, Any]()
     if believed.mass < FELT and not is_settled(scenario, CALM):
         # What the arm's jitter makes does not shrink with the UAV; it averages out.
         update(out, nested(CALM, CALM_S * FELT / believed.mass))
