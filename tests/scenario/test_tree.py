@@ -148,8 +148,8 @@ def test_belief_equals_the_hardware_unless_said_otherwise(landing) -> None:
     truth, belief = dump(landing), dump(landing.believed())
     for name in HARDWARE:
         assert belief[name] == truth[name]
-    # What is foretold follows the plant's mean wind where the user says nothing.
-    assert belief.pop("forecast") == {"wind_mps": landing.foretold_mps}
+    # What is foretold follows the plant's mean wind and its sea where the user says nothing.
+    assert belief.pop("forecast") == {"wind_mps": landing.foretold_mps, "deck_moves": landing.sea.moves}
     assert {k: v for k, v in belief.items() if k not in PLANT_ONLY} == {
         k: v for k, v in truth.items() if k not in (*PLANT_ONLY, "forecast")
     }
