@@ -6,6 +6,8 @@ flown again.
 """
 
 import json
+import multiprocessing
+import os
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -13,7 +15,7 @@ from typing import Any, NamedTuple
 
 from armland.cli.options import load
 from armland.errors import ConfigurationError, ModelError
-from armland.experiments.episode import fly_prepared, prepare
+from armland.experiments.episode import Flight, fly_prepared, prepare
 from armland.experiments.judge.figures import bounds
 
 PAGE = Path(__file__).parents[2] / "docs" / "arm.md"
@@ -72,25 +74,43 @@ ARMS = tuple(
 )
 
 
-def record(folder: Path, arm: Arm, seed: int) -> Record:
-    """One landing of an arm, from its file to the judgement."""
-    told: Record = {"arm": arm.name, "seed": seed, "moved": ""}
+def record(arm: Arm, seed: int, ready: Flight) -> Record:
+    """One landing that is prepared, judged."""
+    told: Record = {"arm": arm.name, "seed": seed, "moved": ready.moved.partition(" chosen")[0]}
+    limits = bounds(ready.brief)
     try:
-        scenario = load("landing", {"arm": str(folder / arm.file), "ee": arm.ee, "deviation": LEVEL})
-        flight = prepare(scenario, "landing", seed)
-    except (ConfigurationError, ModelError) as e:
-        return told | {"result": "refused", "reason": str(e).replace(f"{folder}/", "")}
+        result = fly_prepared(ready).result
     except Exception as e:
         return told | {"result": "breaks", "reason": f"{type(e).__name__}: {e}"}
-    limits = bounds(flight.brief)
-    try:
-        result = fly_prepared(flight).result
-    except Exception as e:
-        return told | {"moved": flight.moved, "result": "breaks", "reason": f"{type(e).__name__}: {e}"}
     shares = dict(_shares(result, limits))
     worst = max(shares, key=lambda name: shares[name])
     how = {"result": "lands" if result["success"] else "fails", "reason": result["reason"]}
-    return told | how | {"moved": flight.moved.partition(" chosen")[0], "share": shares[worst], "of": worst}
+    return told | how | {"share": shares[worst], "of": worst}
+
+
+def landings(folder: Path, arm: Arm, seeds: list[int]) -> list[Record]:
+    """Landings of an arm, from its file to the judgement; what is refused with one seed is refused with all.
+
+    Where it catches is searched for once: no seed changes that.
+    """
+    out: list[Record] = []
+    first: Flight | None = None
+    for seed in seeds:
+        told: Record = {"arm": arm.name, "seed": seed, "moved": ""}
+        try:
+            if first is None:
+                scenario = load("landing", {"arm": str(folder / arm.file), "ee": arm.ee, "deviation": LEVEL})
+                ready = first = prepare(scenario, "landing", seed)
+            else:
+                ready = prepare(first.scenario, "landing", seed, known=first.plan)._replace(moved=first.moved)
+        except (ConfigurationError, ModelError) as e:
+            out.append(told | {"result": "refused", "reason": str(e).replace(f"{folder}/", "")})
+            break
+        except Exception as e:
+            out.append(told | {"result": "breaks", "reason": f"{type(e).__name__}: {e}"})
+            continue
+        out.append(record(arm, seed, ready))
+    return out
 
 
 def _shares(result: Record, limits: dict[str, float]) -> Iterator[tuple[str, float]]:
@@ -102,23 +122,31 @@ def _shares(result: Record, limits: dict[str, float]) -> Iterator[tuple[str, flo
             yield name, float(value) / bound
 
 
-def flown(folder: Path, there: set[tuple[str, int]], seeds: range) -> Iterator[Record]:
-    """Records of all arms and seeds but those that are there; what is refused with one seed is refused with all."""
-    for arm in ARMS:
-        for seed in seeds:
-            if (arm.name, seed) in there:
-                continue
-            made = record(folder, arm, seed)
-            yield made
-            if made["result"] == "refused":
-                break
+def _task(todo: tuple[Path, Arm, list[int]]) -> list[Record]:
+    return landings(*todo)
+
+
+def missing(there: Iterable[Record], seeds: range) -> list[tuple[Arm, list[int]]]:
+    """Arms, and the seeds of each, of which there is no record yet."""
+    known = {(r["arm"], r["seed"]) for r in there}
+    refused = {r["arm"] for r in there if r["result"] == "refused"}
+    left = [(arm, [seed for seed in seeds if (arm.name, seed) not in known]) for arm in ARMS if arm.name not in refused]
+    return [(arm, some) for arm, some in left if some]
+
+
+def flown(folder: Path, there: list[Record], seeds: range) -> Iterator[Record]:
+    """Records of what is missing, one process a core."""
+    todo = [(folder, arm, some) for arm, some in missing(there, seeds)]
+    with multiprocessing.get_context("spawn").Pool(os.cpu_count()) as pool:
+        for records in pool.imap_unordered(_task, todo):
+            yield from records
 
 
 def markdown(records: Iterable[Record]) -> str:
     """The table, with what is said above it."""
-    by_arm: dict[str, list[Record]] = {}
-    for r in records:
-        by_arm.setdefault(r["arm"], []).append(r)
+    there, order = list(records), [a.name for a in ARMS]
+    names = sorted({r["arm"] for r in there}, key=lambda name: (order.index(name) if name in order else -1, name))
+    by_arm = {name: sorted((r for r in there if r["arm"] == name), key=lambda r: r["seed"]) for name in names}
     tried = [r for rows in by_arm.values() for r in rows if r["result"] != "refused"]
     landed = sum(r["result"] == "lands" for r in tried)
     refused = len(by_arm) - len({r["arm"] for r in tried})
@@ -158,7 +186,7 @@ def main() -> None:
     seeds = range(1, 1 + int(sys.argv[3] if len(sys.argv) > 3 else 1))
     there = [json.loads(line) for line in path.read_text("utf-8").splitlines()] if path.is_file() else []
     with path.open("a", encoding="utf-8") as file:
-        for r in flown(folder, {(r["arm"], r["seed"]) for r in there}, seeds):
+        for r in flown(folder, list(there), seeds):
             there.append(r)
             print(json.dumps(r), file=file, flush=True)
     page = PAGE.read_text("utf-8").partition(HEADING)[0]

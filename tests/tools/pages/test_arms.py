@@ -1,7 +1,7 @@
 """The table of arms that were tried counts what landed, and says what stood in the way of the others."""
 
 from pages import arms
-from pages.arms import ARMS, Arm, flown, markdown
+from pages.arms import ARMS, Arm, landings, markdown, missing
 
 GOOD = {"arm": "a.urdf", "seed": 1, "moved": "", "result": "lands", "reason": "landed", "share": 0.4, "of": "fall_m"}
 REFUSED = {"arm": "b.urdf", "seed": 1, "moved": "", "result": "refused", "reason": "too\n short | weak"}
@@ -21,23 +21,16 @@ def test_failure_is_told_with_its_seed():
     assert "lands 1 of 2; seed 2 fails: fell" in page
 
 
-def test_what_is_there_is_not_flown_again_and_a_refusal_is_told_once(monkeypatch, tmp_path):
-    asked = []
-
-    def record(folder, arm, seed):
-        asked.append((arm.name, seed))
-        return REFUSED | {"arm": arm.name, "seed": seed}
-
-    monkeypatch.setattr(arms, "record", record)
-    monkeypatch.setattr(arms, "ARMS", (Arm("a.urdf"), Arm("b.xml", "hand")))
-    assert len(list(flown(tmp_path, {("a.urdf", 1)}, range(1, 3)))) == 2
-    assert asked == [("a.urdf", 2), ("b.xml:hand", 1)]
+def test_what_is_there_is_not_flown_again_and_a_refusal_is_told_once(monkeypatch):
+    monkeypatch.setattr(arms, "ARMS", (Arm("a.urdf"), Arm("b.urdf"), Arm("c.xml", "hand")))
+    assert missing([GOOD, REFUSED], range(1, 3)) == [(Arm("a.urdf"), [2]), (Arm("c.xml", "hand"), [1, 2])]
+    assert missing([], range(1, 2)) == [(arm, [1]) for arm in arms.ARMS]
 
 
-def test_file_that_is_not_there_is_a_refusal_and_no_crash(tmp_path):
-    made = arms.record(tmp_path, Arm("none.urdf"), 1)
-    assert made["result"] == "refused"
-    assert "none.urdf" in made["reason"]
+def test_file_that_is_not_there_is_a_refusal_and_no_crash_and_is_told_once(tmp_path):
+    made = landings(tmp_path, Arm("none.urdf"), [1, 2])
+    assert [r["result"] for r in made] == ["refused"]
+    assert "none.urdf" in made[0]["reason"]
 
 
 def test_arms_are_named_once():
