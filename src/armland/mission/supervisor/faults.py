@@ -60,6 +60,11 @@ LIFTED = 0.6
 SHORT, SHORT_S = 0.08, 0.05
 """Share of the weight by which a UAV that was let go and lies on the arm gives less than it was asked for; time constant of that."""
 
+GIVES, RISES, RISES_S, DRIFTS_S = 0.5, 0.03, 0.3, 0.9
+"""Least that a UAV's rotors give of the thrust that they are asked for while it does not call a rotor lost, with room for its watch;
+share of the weight per s by which the hinge force may rise beyond what such rotors leave, and time constant of that; how much
+longer it must have risen than not to be a sensor's drift: a rotor's loss of the moment shows for up to three time constants."""
+
 LEAPT_S = 0.2
 """How long a leap of the marker counts."""
 
@@ -124,6 +129,12 @@ def seen_layout() -> np.dtype:
             ),  # N, vertical hinge force beyond what a UAV on the magnet makes with the thrust that is asked of it
             ("zero", "f8"),  # N, that until the magnet was switched off
             ("usual", "f8"),  # N, the vertical hinge force of late, where nothing touches the plate
+            (
+                "borne",
+                "f8",
+            ),  # N, of late, the vertical hinge force and what the rotors give at least, while the hinge is freed of force
+            ("rises", "i8"),  # 1 where that rises
+            ("rising", "i8"),  # ticks by which it has risen longer than not
         ]
     )
 
@@ -245,7 +256,10 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     weighed = (row.uav == AUTONOMOUS and kept.act.trimmed > 0) or felt_short or row.uav == BALANCE
     # What the arm still carries the rotors would have to give as well.
     left = max(e.hinge_force[2], 0.0) if row.uav == BALANCE else 0.0
-    signs[THRUST_LOST] = sinks or (weighed and kept.act.hover + left > p.hover_max)
+    _feel_rise(row, known.weight, e, p.tick_s, seen)
+    short = weighed and kept.act.hover + left > p.hover_max
+    signs[THRUST_LOST] = sinks or (short and seen.rises == 0)
+    signs[WRENCH_DRIFT] = signs[WRENCH_DRIFT] or (short and seen.rising * p.tick_s > DRIFTS_S)
     signs[ARM_BLOCKED] = signs[ARM_BLOCKED] or apart > BLOCKED_M**2
     if kept.act.magnet != 0:
         seen.off, seen.carried, seen.zero = m.tick, row.observe, seen.short
@@ -264,6 +278,18 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     torn = signs[OVERLOAD] and e.hinge_force[2] < 0.0
     signs[MAGNET_STUCK] = gone and leaves and (pulls or torn or (follows and not lies))
     signs[OVERLOAD] = signs[OVERLOAD] and not signs[MAGNET_STUCK]
+
+
+@njit(cache=True)
+def _feel_rise(row: Record, weight: float, e: Record, tick_s: float, seen: Record) -> None:
+    # F = W - k T: rotors that give a share k of their thrust relieve the hinge as it rises. A sensor that drifts draws the thrust
+    # after it, and the force that it shows does not fall.
+    borne = e.hinge_force[2] + GIVES * e.thrust
+    if row.uav != BALANCE:
+        seen.borne, seen.rising = borne, 0
+    seen.borne += tick_s / RISES_S * (borne - seen.borne)
+    seen.rises = 1 if borne - seen.borne > RISES * RISES_S * weight else 0
+    seen.rising = max(seen.rising + (1 if seen.rises else -1), 0)
 
 
 @njit(cache=True)
