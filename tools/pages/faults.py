@@ -1,6 +1,7 @@
 """The page `docs/faults.md`: what can fail, how it is seen, what happens then, and what trials in the plant measured."""
 
 from armland.mission.supervisor import faults as sign
+from armland.mission.supervisor import rising
 from armland.mission.supervisor.ends import FINALS, HINGED_FINALS
 from armland.mission.supervisor.faults import LOAD_LEFT, SEEN_S
 from armland.mission.supervisor.remedies import REMEDIES, STANDING
@@ -135,13 +136,15 @@ def signs() -> dict[str, str]:
         f"than {sign.NODDED[0]:g}, or more than {sign.NODDED[1]:g}, and the sensor felt the tool accordingly",
         "thrust_lost": f"sinking at more than {sign.SINKS_MPS:g} m/s with all the thrust, or at more than {sign.PLUNGES_MPS:g} m/s "
         f"with {sign.STRAINS:g} times the hover thrust; or a UAV that needs nearly all that its rotors give, by itself or as the "
-        "arm feels it on the magnet",
+        "arm feels it on the magnet, where the force falls as the thrust rises",
         "arm_stale": f"joint sample older than {v.arm_age_ms:g} ms",
         "uav_silent": f"sample of the UAV, or the command that it had heard by then, older than {v.uav_age_ms:g} ms",
         "camera_stale": f"newest fused image older than {v.camera_age_ms:g} ms, once there was one; "
         f"{v.search_ms:g} ms in `guide`, `miss` and `clear`, where the UAV is looked for",
         "wrench_stale": f"force sample older than {v.wrench_age_ms:g} ms",
-        "wrench_drift": f"vertical hinge force {v.unexplained_n:g} N off what load and thrust explain, where they do",
+        "wrench_drift": f"vertical hinge force {v.unexplained_n:g} N off what load and thrust explain, where they do; "
+        f"or, while the hinge is freed of force, one that does not fall by {rising.GIVES:g} of what the thrust gains, once both "
+        f"together are more than may go into hovering, {rising.DRIFTS_S:g} s long",
         "magnet_coil": f"coil current below what {v.magnet_share:g} of the rated pull needs, 0.15 s after it was switched on",
         "overload": f"hinge force above what healthy flights of the phase make, at most {v.hinge_force_share:g} of the magnet's rating",
         "rotor_lost": "the UAV says that a motor turns slower than it should, while it is held, heard, "

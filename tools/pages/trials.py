@@ -165,7 +165,6 @@ CELLS: dict[tuple[str, str, str], Cell] = {
     ("takeoff", "camera_leap", "flight"): COPES,
     # It is learnt from some twenty images, when the self-test may be over.
     ("landing", "camera_noise", "ground"): Cell(end="abort"),
-    ("takeoff", "camera_noise", "touch"): Cell(found="camera_leap"),
     ("takeoff", "camera_noise", "grip"): Cell(end="abort"),
     ("takeoff", "camera_noise", "held"): Cell(end="abort"),
     ("landing", "link_late", "touch"): Cell(end="holding"),
@@ -230,11 +229,6 @@ OTHERWISE: dict[tuple[str, str, str], str] = {
     ("takeoff", "camera_leap", "touch"): "the UAV leaves the camera's view for longer than a leap lasts",
     ("takeoff", "camera_leap", "flight"): "the UAV leaves the camera's view for longer than a leap lasts",
     ("landing", "camera_noise", "ground"): "it is learnt from some twenty images, when the self-test is over",
-    (
-        "takeoff",
-        "camera_noise",
-        "touch",
-    ): "the UAV leaves the view after few images; what is guessed meanwhile runs away",
     ("landing", "link_late", "touch"): "by then the arm holds the UAV",
     ("takeoff", "camera_noise", "grip"): "it is learnt from some twenty images, when the arm has let go already",
     ("landing", "magnet_stuck", "flight"): "it shows when the magnet is to let go, on the cradle",
@@ -380,6 +374,7 @@ EXTRAS: tuple[Trial, ...] = (
         _f("carry", "arm_stale", 2.0),
         onwards="braked_free",
     ),
+    _extra("takeoff camera after the end", "abort", "camera_stale", _f("done", PROVOKED["camera_stale"])),
     _extra("takeoff link after the end", "abort", "uav_silent", _f("done", "link_loss")),
     _extra("landing encoders after the end", "braked_down", "arm_stale", _f("done", "arm_stale")),
 )

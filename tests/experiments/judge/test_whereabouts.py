@@ -36,6 +36,16 @@ def test_held_needs_all_pads_and_an_upright_uav(ticks, brief):
     assert "toppled by 47°" in in_words(held, brief)
 
 
+def test_one_that_leans_on_the_hinge_and_presses_on_a_rail_does_not_stand(ticks, brief):
+    ticks["truth"]["touching"] = 4
+    ticks["truth"]["quat"] = from_rotation_vector(np.deg2rad([24.0, 0.0, 0.0]))
+    assert state_of(ticks, brief) == "standing"
+    ticks["truth"]["quat"] = from_rotation_vector(np.deg2rad([42.0, 0.0, 0.0]))
+    assert state_of(ticks, brief) == "held"
+    ticks["truth"]["touching"] = 0
+    assert state_of(ticks, brief) == "lost"
+
+
 def test_flying_within_what_it_was_given(ticks, brief):
     flying = ticks[:900]
     assert state_of(flying, brief) == "flying"

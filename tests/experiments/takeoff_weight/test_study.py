@@ -46,10 +46,15 @@ def test_a_heavy_uav_is_not_taken_for_a_drifting_sensor_while_its_weight_is_foun
 
 
 @pytest.mark.slow
-def test_a_sensor_that_drifts_meanwhile_is_found(landing_scenario):
-    fault = {"kind": "wrench_drift", "phase": "hand_back", "after_s": 0.05, "size": 12.0}
+@pytest.mark.parametrize(
+    ("kind", "size", "found"),
+    [("wrench_drift", size, "wrench_drift") for size in (1.0, 3.0, 12.0)]
+    + [("thrust_loss", size, "thrust_lost") for size in (0.3, 0.4)],
+)
+def test_what_drifts_meanwhile_is_told_from_what_is_lost(landing_scenario, kind, size, found):
+    fault = {"kind": kind, "phase": "hand_back", "after_s": 0.05, "size": size}
     j = fly(landing_scenario.replaced({"faults": [fault]}), "takeoff", 1).judgement
-    assert (j.fault, j.end, j.state) == ("wrench_drift", "holding", "held")
+    assert (j.fault, j.end, j.state) == (found, "holding", "held")
 
 
 def test_theory_is_bracketed_monotone_and_says_what_it_would_take(landing_scenario):

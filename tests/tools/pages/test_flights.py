@@ -40,10 +40,6 @@ def flown(t):
     return fly_trial(t)
 
 
-LOST = ("landing dead magnet at the hand-over",)
-"""Trials that end badly: shoved off a dead magnet while it still flies, the UAV is out of view before three images show it."""
-
-
 @pytest.fixture(scope="module", params=TRIALS)
 def flight(request):
     """Each trial, flown once for all tests that look at it."""
@@ -85,9 +81,6 @@ def test_takeoff_that_is_continued_is_byte_for_byte_the_one_flown_through(taken_
 def test_fault_ends_safely(flight):
     t = flight.trial
     assert flight.found[-1] == t.found
-    if t.name in LOST:
-        assert [words[:12] for words in unsafe(flight)] == ["the UAV fell"]
-        return
     assert unsafe(flight) == []
     assert flight.ends == t.ends
     assert flight.judgement.state in t.states
@@ -103,7 +96,7 @@ def test_page_says_what_the_trial_shows(flight, page):
         assert float(a) == pytest.approx(float(b), rel=0.25, abs=tolerance)
 
 
-@pytest.mark.parametrize("t", [t for t in all_trials() if t.name in QUICK and t.name not in LOST], ids=lambda t: t.name)
+@pytest.mark.parametrize("t", [t for t in all_trials() if t.name in QUICK], ids=lambda t: t.name)
 def test_reason_names_fault_state_and_remedy(t):
     judgement = flown(t).judgement
     assert f"ended in {t.ends[-1]}" in judgement.reason
@@ -117,7 +110,8 @@ BLIND = {
     "non_finite": ("landing", "touch", ("non_finite", "wrench_stale")),
     "arm_stale": ("landing", "held", ("arm_stale",)),
     "uav_silent": ("landing", "held", ("uav_silent",)),
-    "camera_stale": ("takeoff", "touch", ("camera_stale",)),
+    # Elsewhere the phase runs out of time, too.
+    "camera_stale": ("takeoff camera after the end", ("camera_stale",)),
     "wrench_stale": ("landing", "touch", ("wrench_stale",)),
     "wrench_drift": ("landing", "held", ("wrench_drift",)),
     "magnet_coil": ("landing", "touch", ("magnet_coil",)),
@@ -130,21 +124,47 @@ BLIND = {
     "camera_leap": ("landing", "flight", ("camera_leap",)),
     "camera_noise": ("takeoff", "ground", ("camera_noise",)),
     "wrench_wrong": ("landing", "ground", ("wrench_wrong", "wrench_drift")),
-    "magnet_stuck": ("takeoff", "flight", ("magnet_stuck",)),
+    # In the air the UAV that hangs on it is taken for one that is too weak to rise; on the cradle the arm tears it off.
+    "magnet_stuck": ("landing", "cradle", ("magnet_stuck",)),
     "arm_blocked": ("landing", "flight", ("arm_blocked", "near_limit")),
-    "thrust_lost": ("landing", "flight", ("thrust_lost",)),
+    # A flying UAV falls either way; one on the magnet need not be let go.
+    "thrust_lost": ("takeoff", "held", ("thrust_lost",)),
+    "thrust_short": ("takeoff", "flight", ("thrust_short",)),
+    "link_late": ("landing", "flight", ("link_late",)),
 }
-"""Fault -> cell in which its loss is seen, and to what the supervisor is blind; NaN from a device is also a stale device."""
+"""Fault -> cell, or name of the trial, in which its loss is seen, and to what the supervisor is blind; NaN from a device is also a
+stale device."""
+
+
+def blinded(fault):
+    """Trial of `BLIND` as flown by the supervisor, and by one that is blind to it."""
+    *where, blind_to = BLIND[fault]
+    t = trial(where[0], fault, where[1]) if len(where) == 2 else next(t for t in all_trials() if t.name == where[0])
+    return flown(t), fly_trial(t, blind_to)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("fault", [f for f in PROVOKED if f != "power_lost"])  # Silence leads where it leads.
 def test_blind_to_the_fault_the_same_failure_comes_out_differently(fault):
-    mission, kind, blind_to = BLIND[fault]
-    t = trial(mission, fault, kind)
-    seen, blind = flown(t), fly_trial(t, blind_to)
-    assert not set(blind_to) & set(blind.found)
+    seen, blind = blinded(fault)
+    assert not set(BLIND[fault][-1]) & set(blind.found)
     assert blind.ends != seen.ends or blind.reaction_s > 5.0 * seen.reaction_s
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", ["thrust_lost", "thrust_short", "link_late"])
+def test_blind_to_what_keeps_it_from_flying_the_uav_is_lost(fault):
+    seen, blind = blinded(fault)
+    assert seen.judgement.state != "lost"
+    assert unsafe(seen) == []
+    assert blind.judgement.state == "lost"
+
+
+@pytest.mark.slow
+def test_blind_to_a_magnet_that_sticks_the_arm_tears_at_it():
+    seen, blind = blinded("magnet_stuck")
+    assert seen.force_n < 25.0
+    assert blind.force_n > 90.0
 
 
 @pytest.mark.slow
@@ -175,7 +195,6 @@ def test_blind_to_slip_the_uav_falls_off():
     t = trial("landing", "slip", "held")
     blind, seen = fly_trial(t, ("slip", "rotor_lost")), flown(t)
     assert any("fell" in line for line in unsafe(blind))
-    # Seen, it ends at the bound of a fall: see the trials that are known to end badly.
     assert blind.sink_mps > 1.5 * seen.sink_mps
 
 

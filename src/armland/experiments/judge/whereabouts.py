@@ -8,7 +8,7 @@ from armland.experiments.judge.deck import deck_speed
 from armland.rotations import Array
 
 FLYING_SPEED_MPS = 0.6  # A UAV that flies off by itself is not faster, unless the arm has given it more
-TOPPLED_DEG = 25.0  # Tilt beyond which a UAV in the air is out of control, and beyond what it leans against the wind
+TOPPLED_DEG = 25.0  # Tilt beyond which a UAV does not stand and, beyond what it leans against the wind, does not fly under control
 LEANING_DEG = 46.0  # Tilt of one that leans on both of the hinge's stops, 30 degrees each, a little askew
 FALL_MPS = 1.2  # Faster than this downwards is a fall: from 7 cm
 
@@ -42,7 +42,9 @@ def state_of(ticks: Ticks, brief: Brief) -> str:
     deck = deck_speed(truth)
     if truth["v"][:, 2].min() < -FALL_MPS - deck:
         return "lost"
-    if speed < STILL_MPS and late["cradle_force"][:, 2].min() > least(CARRIED_N, CARRIED_SHARE, brief):
+    # One that leans on its hinge may press on a rail, too: it does not stand.
+    carried = late["cradle_force"][:, 2].min() > least(CARRIED_N, CARRIED_SHARE, brief)
+    if speed < STILL_MPS and carried and tilt < TOPPLED_DEG:
         return "standing"
     # One that has toppled over its hinge is not held, even where the magnet grips; least of all one that lies on the arm.
     toppled = late["foul"][:, 2].any() or tilt > LEANING_DEG

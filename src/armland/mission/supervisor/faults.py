@@ -12,6 +12,7 @@ from numba import njit
 
 from armland.mission.reference.guided import MOST_HOVER
 from armland.mission.reference.moves import BACK_OFF, MOVE, NOD, YIELD
+from armland.mission.supervisor.rising import DRIFTS_S, needed
 from armland.mission.supervisor.table import FAULT, FAULTS
 from armland.mission.table.arrays import FAULT_ROWS
 from armland.mission.table.phases import LINK, UAV
@@ -20,13 +21,14 @@ from armland.records import Record
 COUNT = len(FAULTS)
 AUTONOMOUS, STATION, RAMP, BALANCE = (UAV.index(name) for name in ("autonomous", "station", "ramp", "balance"))
 CAUGHT = LINK.index("caught")
-NON_FINITE, ARM_STALE, UAV_SILENT = FAULT["non_finite"], FAULT["arm_stale"], FAULT["uav_silent"]
+NON_FINITE, ARM_STALE, UAV_SILENT, LINK_LATE = (
+    FAULT[name] for name in ("non_finite", "arm_stale", "uav_silent", "link_late")
+)
 CAMERA_STALE, WRENCH_STALE, WRENCH_DRIFT = FAULT["camera_stale"], FAULT["wrench_stale"], FAULT["wrench_drift"]
 MAGNET_COIL, OVERLOAD, ROTOR_LOST = FAULT["magnet_coil"], FAULT["overload"], FAULT["rotor_lost"]
 ENCODER_FROZEN, POWER_LOST, CAMERA_LEAP = FAULT["encoder_frozen"], FAULT["power_lost"], FAULT["camera_leap"]
 CAMERA_NOISE, WRENCH_WRONG, MAGNET_STUCK = FAULT["camera_noise"], FAULT["wrench_wrong"], FAULT["magnet_stuck"]
 ARM_BLOCKED, THRUST_LOST, THRUST_SHORT = FAULT["arm_blocked"], FAULT["thrust_lost"], FAULT["thrust_short"]
-LINK_LATE = FAULT["link_late"]
 UAV_TILT, SLIP, NEAR_LIMIT, LAW_FAILED = FAULT["uav_tilt"], FAULT["slip"], FAULT["near_limit"], FAULT["law_failed"]
 
 SEEN_S = 0.15
@@ -118,12 +120,15 @@ def seen_layout() -> np.dtype:
             ("counts", "i8", (FAULT_ROWS,)),  # ticks for which each fault's sign has been seen
             ("off", "i8"),  # tick at which the magnet was switched off last
             ("carried", "i8"),  # 1 where the UAV hung on the arm until then
-            (
-                "short",
-                "f8",
-            ),  # N, vertical hinge force beyond what a UAV on the magnet makes with the thrust that is asked of it
+            ("short", "f8"),  # N, vertical hinge force beyond what a UAV on the magnet makes with its thrust
             ("zero", "f8"),  # N, that until the magnet was switched off
             ("usual", "f8"),  # N, the vertical hinge force of late, where nothing touches the plate
+            (
+                "borne",
+                "f8",
+            ),  # N, of late, the vertical hinge force and what the rotors give at least, while the hinge is freed of force
+            ("rises", "i8"),  # 1 where that rises
+            ("rising", "i8"),  # ticks by which it has risen longer than not
         ]
     )
 
@@ -143,17 +148,14 @@ def find_fault(expected: float, magnet_on: bool, phase: int, b: Record) -> int:
     _device_signs(magnet_on, b.table.phases[phase].seeks == 1, m, e, b.told.decide.watch, b.kept.estimate, signs)
     row, act = b.table.phases[phase], b.kept.act
     caught = row.uav == RAMP and row.link == CAUGHT
-    runs_away = (
-        caught and act.hover > 0.95 * MOST_HOVER * b.kept.estimate.weight and abs(act.short) > b.told.act.uav.shortfall
-    )
+    runs_away = caught and act.hover > 0.95 * MOST_HOVER * b.kept.estimate.weight
+    runs_away = runs_away and abs(act.short) > b.told.act.uav.shortfall
     _load_signs(expected, runs_away, row.force, m, e, b.told.decide.watch, b.kept.estimate, signs)
     _motion_signs(b.table.phases[phase], b, signs)
     _sensor_signs(expected, b.table.phases[phase], b, signs)
     p, health = b.told.decide.watch, b.kept.limit
-    sigma = b.kept.estimate.sigma
-    signs[NEAR_LIMIT] = (
-        health.joint_margin < p.joint_margin or sigma < p.sigma_min or health.speed_ratio > p.speed_share
-    )
+    near = health.joint_margin < p.joint_margin or b.kept.estimate.sigma < p.sigma_min
+    signs[NEAR_LIMIT] = near or health.speed_ratio > p.speed_share
     signs[LAW_FAILED] = b.kept.act.law.failed != 0
     for f in range(1, COUNT):
         s.counts[f] = s.counts[f] + 1 if signs[f] else 0
@@ -243,9 +245,9 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     # What is still being learnt says nothing: a sensor that drifts is never done.
     felt_short = row.uav == RAMP and row.link == CAUGHT and abs(kept.act.short) < b.told.act.uav.shortfall
     weighed = (row.uav == AUTONOMOUS and kept.act.trimmed > 0) or felt_short or row.uav == BALANCE
-    # What the arm still carries the rotors would have to give as well.
-    left = max(e.hinge_force[2], 0.0) if row.uav == BALANCE else 0.0
-    signs[THRUST_LOST] = sinks or (weighed and kept.act.hover + left > p.hover_max)
+    short = needed(row.uav == BALANCE, known.weight, kept.act.hover, p.tick_s, e, seen) > p.hover_max and weighed
+    signs[THRUST_LOST] = sinks or (short and seen.rises == 0)
+    signs[WRENCH_DRIFT] = signs[WRENCH_DRIFT] or (short and seen.rising * p.tick_s > DRIFTS_S)
     signs[ARM_BLOCKED] = signs[ARM_BLOCKED] or apart > BLOCKED_M**2
     if kept.act.magnet != 0:
         seen.off, seen.carried, seen.zero = m.tick, row.observe, seen.short
