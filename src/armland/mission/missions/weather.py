@@ -7,7 +7,7 @@ import numpy as np
 from armland.mission.table.mission import Criterion, Mission
 from armland.models.airframe.sizing import at, is_settled, nested
 from armland.models.parameters import rotor_set, uav_parameters
-from armland.models.weather import GUST, MOST_RAD, SPARE_RAD, STRONGEST, Wind, expected, swayed
+from armland.models.weather import GUST, LENGTH_M, MOST_RAD, SPARE_RAD, STRONGEST, Wind, expected, swayed
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 
@@ -61,6 +61,8 @@ def weathered(scenario: Scenario, mass: float) -> Scenario:
         "bounds.level_tilt_deg": 2.0 * scenario.bounds.level_tilt_deg,
         "control.thrust.carry_share": share,
         "bounds.share_touched": scenario.bounds.share_touched + share * LIFT * wind.sinking,
+        # A UAV that a gust has taken out of view comes back when the gust is over.
+        "limits.search_ms": scenario.limits.search_ms + 1e3 * LENGTH_M / wind.mean,
         "limits.unexplained_n": scenario.limits.unexplained_n + sinks,
         "limits.shortfall_n": scenario.limits.shortfall_n + GUST * sinks,
     }
