@@ -94,6 +94,7 @@ def test_rotors_of_a_carried_uav_keep_what_its_heading_needs_beyond_what_holds_i
     reach = np.abs(rotor_set(scenario).place[:, :2]).mean()
     assert share * mass * 9.81 * reach == pytest.approx(scenario.uav.drag_nspm * wind.gust(2.0) * lever)
     assert share > 0.1
+    assert weathered(scenario, mass, lands=False).control.thrust == scenario.control.thrust
     strongest = weathered(sized(landing(12.0, uav={"drag_nspm": 0.4})).believed(), mass)
     assert strongest.control.thrust.carry_share == MOST_CARRIED < 1.0 - strongest.bounds.share_carried
 

@@ -27,12 +27,14 @@ ROUGH_MPS, ROUGH_DEG = 0.25, 5.0
 """Largest speed and tilt at the touchdown of a landing in wind."""
 
 
-def weathered(scenario: Scenario, mass: float) -> Scenario:
+def weathered(scenario: Scenario, mass: float, lands: bool = True) -> Scenario:
     """The believed scenario with the limits that its wind needs; those that the user has set stay, and so does what is wide enough.
 
     Args:
         scenario: believed.
         mass: kg, of all that flies.
+        lands: whether it is flying when the arm takes it over, so that what its rotors really lift is learnt before they carry a share;
+            the ramp of a take-off asks for less lift than there will be.
     """
     wind, g = expected(scenario), float(np.linalg.norm(scenario.environment.gravity_mps2))
     if wind.mean <= 0.0:
@@ -43,7 +45,8 @@ def weathered(scenario: Scenario, mass: float) -> Scenario:
     gusts = rate * wind.sigma
     # N, of the lift of a UAV whose rotors carry it, in sinking air.
     sinks = LIFT * mass * g * wind.sinking
-    share = min(scenario.control.thrust.carry_share + _upright(scenario, wind) / (mass * g), MOST_CARRIED)
+    share = scenario.control.thrust.carry_share
+    share = min(share + _upright(scenario, wind) / (mass * g), MOST_CARRIED) if lands else share
     wanted = {
         "control.station.tilt_max_rad": min(strongest + SPARE_RAD, MOST_RAD),
         "control.station.gust_max_mps2": rate * wind.gust(STRONGEST),
