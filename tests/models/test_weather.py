@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
+from armland.experiments.episode import fly
 from armland.mission.missions.landing import LANDING
-from armland.mission.missions.weather import judged, weathered
+from armland.mission.missions.weather import MOST_CARRIED, judged, weathered
 from armland.models.airframe.sizing import sized
-from armland.models.parameters import plate_mass, uav_parameters
-from armland.models.weather import MOST_RAD, expected, started, swayed
-from armland.plant.wind.dryden import intensities
+from armland.models.parameters import plate_mass, rotor_set, uav_parameters
+from armland.models.weather import HEIGHT_M, MOST_RAD, expected, started, swayed
+from armland.plant.wind.dryden import intensities, lengths
 from armland.plant.wind.profile import height_of_catch, speed_at
 from armland.scenario import load_scenario
 
@@ -82,3 +83,46 @@ def test_uav_that_waits_in_wind_is_guided_from_the_first_sight_on():
     first, second, *_ = LANDING.phases(landing(4.0).believed())
     assert (first.name, first.uav, first.guards[0].target) == ("find", "autonomous", "self_test")
     assert (second.name, second.uav, second.seeks) == ("self_test", "station", True)
+
+
+def test_rotors_of_a_carried_uav_keep_what_its_heading_needs_beyond_what_holds_it_upright():
+    """Drag at the centre of mass, hinge below it: the torque that a couple of rotors a reach apart holds against."""
+    scenario = sized(landing(8.0)).believed()
+    mass, wind, lever = mass_of(scenario), expected(scenario), abs(uav_parameters(scenario).lever[2])
+    made = weathered(scenario, mass)
+    share = made.control.thrust.carry_share - scenario.control.thrust.carry_share
+    reach = np.abs(rotor_set(scenario).place[:, :2]).mean()
+    assert share * mass * 9.81 * reach == pytest.approx(scenario.uav.drag_nspm * wind.gust(2.0) * lever)
+    assert share > 0.1
+    assert weathered(scenario, mass, lands=False).control.thrust == scenario.control.thrust
+    strongest = weathered(sized(landing(12.0, uav={"drag_nspm": 0.4})).believed(), mass)
+    assert strongest.control.thrust.carry_share == MOST_CARRIED < 1.0 - strongest.bounds.share_carried
+
+
+def test_arm_yields_until_both_skids_of_a_leaning_uav_bear():
+    scenario = sized(landing(8.0)).believed()
+    made = weathered(scenario, mass_of(scenario)).control.approach.give_way_max_m
+    assert made - scenario.control.approach.give_way_max_m == pytest.approx(0.15 * np.sin(np.deg2rad(5.0)))
+
+
+def test_uav_out_of_view_is_looked_for_until_a_gust_has_passed():
+    scenario = sized(landing(8.0)).believed()
+    more = 1e-3 * (weathered(scenario, mass_of(scenario)).limits.search_ms - scenario.limits.search_ms)
+    along, *_ = lengths(HEIGHT_M)
+    assert more * expected(scenario).mean == pytest.approx(along, rel=0.01)
+    assert sized(landing(8.0)).run.duration_s > landing(8.0).run.duration_s + 2.0 * more
+    phases = {p.name: p for p in LANDING.phases(scenario)}
+    assert min(phases[name].timeout_s for name in ("find", "guide", "miss")) > more + 8.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("share", "kept"), [(None, True), (0.5, False)])
+def test_carried_uav_keeps_its_heading_in_gusts_by_that_thrust(share, kept):
+    """Seed 73043, W20 of 8 m/s: with half of the weight on the rotors two of them stand still, and it turns by 40 degrees."""
+    own = {} if share is None else {"control": {"thrust": {"carry_share": share}}}
+    air = {"wind_mps": 8.0, "turbulence": "by_wind"}
+    scenario = load_scenario("landing", {"deviation": {"level": "published"}, "air": air, **own})
+    table = fly(scenario, "landing", 73043).table()
+    turned = np.rad2deg(2.0 * np.arctan2(table["truth.quat.3"], table["truth.quat.0"]))
+    standing = table["truth.cradle_force.2"] > 3.0
+    assert (float(np.abs(turned[standing]).max()) < 3.0) is kept

@@ -156,7 +156,7 @@ def _path_plan(scenario: Scenario, mission: Mission, law: str | None, row: str) 
 def _flight_plan(scenario: Scenario, mission: Mission, law: str | None, trial: bool) -> Plan:
     arm, takes_off, run = arm_model(scenario), mission.start == "cradle", scenario.run
     flies = flyer(scenario)
-    mission, scenario = judged(mission, scenario, flies.weight), weathered(scenario, flies.mass)
+    mission, scenario = judged(mission, scenario, flies.weight), weathered(scenario, flies.mass, mission.start == "air")
     check_weight(scenario, flies, takes_off and flies_on(scenario), trial)
     if not takes_off:
         check_capture(scenario, flies.mass)

@@ -109,7 +109,7 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
         c.uav_mode = MODE_AUTONOMOUS
         s.thrust = s.hover
         _level(p, s)
-        if what == STATION:
+        if what == STATION or (row.seeks == 1 and p.sight.leans and _unseen(e, b.kept.estimate, p)):
             seek(s.alone * p.tick_s, e, b.kept.estimate.seen == 1, p, s)
     elif what == STATION:
         keep_shortfall(p, s)

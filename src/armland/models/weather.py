@@ -31,6 +31,10 @@ GUST = 2.0
 STRONGEST = 3.0
 """Likewise of one that must not bring it to an end."""
 
+LENGTH_M, WAITS = 44.0, 3.0
+"""Length of turbulence along the wind at 20 ft, h/(0.177 + 0.000823 h)^1.2 in feet: over the mean wind it is the time that a gust takes
+to pass. For how many of them a run has time beyond one in calm air."""
+
 SPARE_RAD, MOST_RAD = 0.05, 0.52
 """Lean that is left to move the UAV while it holds against the strongest gust; largest that an autopilot of this kind is set to:
 AR.Drone, `euler_angle_max`."""
@@ -78,7 +82,10 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
     rate = scenario.uav.drag_nspm / mass
     lean = min(wind.lean(rate / g, STRONGEST) + SPARE_RAD, MOST_RAD)
     down = GUST * rate * wind.sigma / (own.k_position * own.k_velocity + own.k_integral)
+    # Recorded winds and decks last as long as they last.
+    longer = 0.0 if scenario.air.trace or scenario.sea.trace else WAITS * LENGTH_M / wind.mean
     return {
+        "run.duration_s": scenario.run.duration_s + longer,
         "place.start_above_m": scenario.place.start_above_m + down,
         "onboard.hover.tilt_max_rad": max(own.tilt_max_rad, lean),
     }

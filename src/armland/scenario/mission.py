@@ -86,7 +86,9 @@ class Limits(Section):
     sigma_min: Annotated[float, between(1e-6, 1.0)] = key(0.03, "ratio: smallest singular value of the Jacobian")
     uav_age_ms: of.PositiveMilliseconds = key(250.0, "age of the UAV's sample at which it counts as silent")
     camera_age_ms: of.PositiveMilliseconds = key(2000.0, "age of the camera's sample at which it counts as blind")
-    search_ms: of.PositiveMilliseconds = key(8000.0, "likewise while the arm waits below and the UAV is looked for")
+    search_ms: Annotated[float, between(1e-3, 60_000.0)] = key(
+        8000.0, "likewise while the arm waits below and the UAV is looked for"
+    )
     arm_age_ms: of.PositiveMilliseconds = key(5.0, "age of the joints' sample at which the arm is stopped")
     wrench_age_ms: of.PositiveMilliseconds = key(
         20.0, "age of the force-torque sensor's sample at which it counts as dead"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from armland.mission.reference.moves import BACK_OFF, HOLD, MOVE
+from armland.mission.reference.moves import BACK_OFF, HOLD, MOVE, YIELD
 from armland.mission.supervisor.faults import AUTONOMOUS, BALANCE, RAMP, STATION, find_fault
 from armland.mission.supervisor.table import FAULT, FAULTS
 from armland.rotations import from_rotation_vector
@@ -628,13 +628,26 @@ def test_weight_that_has_just_left_the_magnet_is_no_leap_of_the_sensor(bench, di
 
 @pytest.mark.parametrize(
     ("reads", "arm", "found"),
-    [(0.0, HOLD, "wrench_wrong"), (0.2, HOLD, "none"), (-2.0, HOLD, "none"), (0.0, BACK_OFF, "none")],
+    [
+        (0.0, HOLD, "wrench_wrong"),
+        (0.0, YIELD, "wrench_wrong"),
+        (0.2, HOLD, "none"),
+        (-2.0, HOLD, "none"),
+        (0.0, BACK_OFF, "none"),
+    ],
 )
 def test_sensor_that_reads_nothing_at_all_is_dead(bench, reads, arm, found):
     """Not even the tool; a plate that sticks pulls the arm that draws back through that reading."""
     bench.m["wrench"][0, 2] = bench.kept["estimate"]["wrench"]["bias"][0, 2] = 1.3
     bench.m["wrench"][0, 2] += reads * tool(bench)
-    assert find(bench, LONG, ["wrench_wrong"], arm=arm) == found
+    assert find(bench, 2 * LONG, ["wrench_wrong"], arm=arm) == found
+
+
+@pytest.mark.parametrize(("arm", "found"), [(HOLD, "wrench_wrong"), (YIELD, "none")])
+def test_arm_that_presses_as_hard_as_the_tool_weighs_gives_way_to_it_and_is_not_dead(bench, arm, found):
+    """0.2 s of a reading that a dead sensor keeps: seen in `test_sensor_that_reads_nothing_at_all_is_dead`."""
+    bench.m["wrench"][0, 2] = bench.kept["estimate"]["wrench"]["bias"][0, 2] = 1.3
+    assert find(bench, 200, ["wrench_wrong"], arm=arm) == found
 
 
 @pytest.mark.parametrize(

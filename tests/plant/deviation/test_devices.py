@@ -150,3 +150,16 @@ def test_wind_blows_horizontally_and_gusts_are_half_as_strong_upwards(told):
 @pytest.mark.parametrize("devices", [{}, {"air": {"downwash": 0.1}}, {"uav": {"mass": 0.1}}])
 def test_still_air_is_not_moved(told, devices):
     assert told(**devices)["air"]["moves"] == 0
+
+
+@pytest.mark.parametrize(("own", "shares"), [({}, [0.5, 0.5, 1.0]), ({"arm": {"compliance": [5e-5, 5e-5]}}, [1, 1, 1])])
+def test_gear_of_a_strong_joint_winds_up_as_far_by_its_full_torque_as_the_lwrs(landing, own, shares):
+    """Joints of 352 N·m, twice the strongest of the LWR's; what the user sets counts as it is."""
+
+    def compliance(factor):
+        limits = [factor * x for x in LIMITS]
+        changes = {"deviation": {"level": "published", **own}, "arm": {"torque_limits_nm": limits}}
+        return Simulator(landing(**changes), HOME, "air").world["told"]["encoders"]["compliance"][0]
+
+    ratio = compliance(2.0) / compliance(1.0)
+    np.testing.assert_allclose(ratio[[0, 1, 5]], shares)

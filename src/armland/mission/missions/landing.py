@@ -99,7 +99,10 @@ def _phases(scenario: Scenario) -> tuple[Phase, ...]:
     if windy:
         # What the rotors make of a command changes until the cradle is near.
         rest = [p._replace(observe=True) if p.name == "set_down" else p for p in rest]
-    return (FIND, first._replace(uav="station", seeks=True, timeout_s=20.0), *rest)
+    # As long as `limits.search_ms` and the guiding afterwards may take.
+    looks = [p._replace(timeout_s=40.0) if windy and p.seeks else p for p in rest]
+    wait_s = 40.0 if windy else 20.0
+    return (FIND._replace(timeout_s=wait_s), first._replace(uav="station", seeks=True, timeout_s=wait_s), *looks)
 
 
 TARGETS = {

@@ -6,7 +6,8 @@ import numpy as np
 
 from armland.mission.table.mission import Criterion, Mission
 from armland.models.airframe.sizing import at, is_settled, nested
-from armland.models.weather import GUST, MOST_RAD, SPARE_RAD, STRONGEST, expected, swayed
+from armland.models.parameters import rotor_set, uav_parameters
+from armland.models.weather import GUST, LENGTH_M, MOST_RAD, SPARE_RAD, STRONGEST, Wind, expected, swayed
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 
@@ -19,16 +20,21 @@ SPARE_DEG = 5.0
 LIFT = 0.3
 """Share of the weight by which the rotors' lift changes in a gust that sinks by 1 m/s, or blows along by three times that."""
 
+MOST_CARRIED = 0.75
+"""Largest share of the weight that the rotors carry meanwhile: the arm must feel that it holds the UAV."""
+
 ROUGH_MPS, ROUGH_DEG = 0.25, 5.0
 """Largest speed and tilt at the touchdown of a landing in wind."""
 
 
-def weathered(scenario: Scenario, mass: float) -> Scenario:
+def weathered(scenario: Scenario, mass: float, lands: bool = True) -> Scenario:
     """The believed scenario with the limits that its wind needs; those that the user has set stay, and so does what is wide enough.
 
     Args:
         scenario: believed.
         mass: kg, of all that flies.
+        lands: whether it is flying when the arm takes it over, so that what its rotors really lift is learnt before they carry a share;
+            the ramp of a take-off asks for less lift than there will be.
     """
     wind, g = expected(scenario), float(np.linalg.norm(scenario.environment.gravity_mps2))
     if wind.mean <= 0.0:
@@ -39,6 +45,8 @@ def weathered(scenario: Scenario, mass: float) -> Scenario:
     gusts = rate * wind.sigma
     # N, of the lift of a UAV whose rotors carry it, in sinking air.
     sinks = LIFT * mass * g * wind.sinking
+    share = scenario.control.thrust.carry_share
+    share = min(share + _upright(scenario, wind) / (mass * g), MOST_CARRIED) if lands else share
     wanted = {
         "control.station.tilt_max_rad": min(strongest + SPARE_RAD, MOST_RAD),
         "control.station.gust_max_mps2": rate * wind.gust(STRONGEST),
@@ -47,12 +55,17 @@ def weathered(scenario: Scenario, mass: float) -> Scenario:
         "control.station.k_velocity": STIFF[1],
         "control.station.k_integral": STIFF[2],
         "control.station.vertical": STIFF[3],
+        # One skid meets its rail first: the arm goes down on until both do.
+        "control.approach.give_way_max_m": scenario.control.approach.give_way_max_m
+        + scenario.skids.x_m * float(np.sin(np.deg2rad(ROUGH_DEG))),
         "bounds.force_balanced_n": scenario.bounds.force_balanced_n + scenario.uav.drag_nspm * wind.sigma * GUST,
         "bounds.flown_error_m": scenario.bounds.flown_error_m + gusts / (STIFF[0] * STIFF[1]),
         "bounds.flown_speed_mps": scenario.bounds.flown_speed_mps + gusts / STIFF[1],
         "bounds.level_tilt_deg": 2.0 * scenario.bounds.level_tilt_deg,
-        "bounds.share_touched": scenario.bounds.share_touched
-        + scenario.control.thrust.carry_share * LIFT * wind.sinking,
+        "control.thrust.carry_share": share,
+        "bounds.share_touched": scenario.bounds.share_touched + share * LIFT * wind.sinking,
+        # A UAV that a gust has taken out of view comes back when the gust is over.
+        "limits.search_ms": scenario.limits.search_ms + 1e3 * LENGTH_M / wind.mean,
         "limits.unexplained_n": scenario.limits.unexplained_n + sinks,
         "limits.shortfall_n": scenario.limits.shortfall_n + GUST * sinks,
     }
@@ -61,6 +74,14 @@ def weathered(scenario: Scenario, mass: float) -> Scenario:
         if value > at(scenario, key) and not is_settled(scenario, key):
             update(changes, nested(key, value))
     return scenario.replaced(changes) if changes else scenario
+
+
+def _upright(scenario: Scenario, wind: Wind) -> float:
+    # N, of the rotors' thrust that goes into holding a UAV upright that the arm carries below its centre of mass, where the wind
+    # pushes: without it some stand still and none is left for the heading, by which its skids would miss the rails.
+    place, lever = rotor_set(scenario).place, abs(float(uav_parameters(scenario).lever[2]))
+    reach = float(np.abs(place[:, :2]).mean())
+    return float(scenario.uav.drag_nspm * wind.gust(GUST) * lever / reach)
 
 
 def judged(mission: Mission, scenario: Scenario, weight: float) -> Mission:

@@ -59,6 +59,9 @@ NOTHING = 0.09
 LIFTED = 0.6
 """Share of the tool's weight, beside what load and thrust explain, below which a sensor may read nothing."""
 
+PRESSES_S = 0.4
+"""Time within which the force of an arm that gives way has passed the tool's weight."""
+
 SHORT, SHORT_S = 0.08, 0.05
 """Share of the weight by which a UAV that was let go and lies on the arm gives less than it was asked for; time constant of that."""
 
@@ -122,6 +125,7 @@ def seen_layout() -> np.dtype:
             ("carried", "i8"),  # 1 where the UAV hung on the arm until then
             ("short", "f8"),  # N, vertical hinge force beyond what a UAV on the magnet makes with its thrust
             ("zero", "f8"),  # N, that until the magnet was switched off
+            ("nothing", "i8"),  # ticks in a row in which the sensor has read nothing
             ("usual", "f8"),  # N, the vertical hinge force of late, where nothing touches the plate
             (
                 "borne",
@@ -292,6 +296,9 @@ def _sensor_signs(expected: float, row: Record, b: Record, signs: np.ndarray) ->
     # A UAV whose rotors lift as much as the tool weighs leaves the sensor nothing to read, and all is well.
     lifted = abs(tool + expected) < LIFTED * tool
     dead = row.free == 0 and nothing < (NOTHING * tool) ** 2 and not lifted
+    seen.nothing = seen.nothing + 1 if dead else 0
+    # An arm that presses a UAV onto the cradle as hard as the tool weighs gives way to that, and a sensor that is dead stays dead.
+    dead = dead and (row.arm != YIELD or seen.nothing * p.tick_s > PRESSES_S)
     signs[WRENCH_WRONG] = signs[WRENCH_WRONG] or (not quiet and (leapt or dead))
 
 

@@ -20,6 +20,10 @@ DISCS_M2 = 4 * 0.1**2
 VERTICAL = 0.5
 """Vertical gusts over horizontal ones, near the ground."""
 
+GEARED_NM = 176.0
+"""Torque of the joint whose gear the published compliance stands for, the LWR's largest; the gear of a stronger joint is stiffer in
+proportion, so that its full torque winds it up as far: assumption."""
+
 
 def deviate_devices(values: Values, scenario: Scenario, scene: Scene, told: Records) -> None:
     """Write the deviations into `told` (1,), the devices' part of the plant's record; the scene has them already.
@@ -117,7 +121,8 @@ def _wrench(values: Values, told: Records) -> None:
 def _arm(values: Values, scenario: Scenario, scene: Scene, told: Records) -> None:
     nothing, limits, motor = np.zeros(scene.joints), torque_limits(scene), told["motors"]
     told["encoders"]["offset"] += values.get("arm.encoder_rad", nothing)
-    told["encoders"]["compliance"] = values.get("arm.compliance", nothing)
+    stiffer = GEARED_NM / np.maximum(limits, GEARED_NM) if scenario.deviation.arm.compliance is None else 1.0
+    told["encoders"]["compliance"] = stiffer * values.get("arm.compliance", nothing)
     motor["offset"] += values.get("arm.torque", nothing) * limits
     motor["gain"] *= 1.0 + values.get("arm.torque_gain", nothing)
     motor["sigma"], motor["load"] = value(values, "arm.torque_noise") * limits, value(values, "arm.load_friction")

@@ -171,7 +171,8 @@ class ArmDeviation(Device):
     compliance: Own = deviates(
         (0.0, 5e-5),
         (0.0, 0.01),
-        "rad/(N·m) between each encoder and its link; assumption: harmonic drives of 20 kN·m/rad and more",
+        "rad/(N·m) between each encoder and its link; assumption: harmonic drives of 20 kN·m/rad and more, "
+        "those of joints beyond 176 N·m stiffer in proportion",
         "n",
     )
     inertia: Own = deviates(
