@@ -1,7 +1,7 @@
 """The page `docs/faults.md`: what can fail, how it is seen, what happens then, and what trials in the plant measured."""
 
 from armland.mission.supervisor import faults as sign
-from armland.mission.supervisor import rising
+from armland.mission.supervisor import reading, rising
 from armland.mission.supervisor.ends import FINALS, HINGED_FINALS
 from armland.mission.supervisor.faults import LOAD_LEFT, SEEN_S
 from armland.mission.supervisor.remedies import REMEDIES, STANDING
@@ -117,13 +117,14 @@ def signs() -> dict[str, str]:
         "encoder_frozen": "a joint's position repeats bit by bit in two samples, its speed none, while samples arrive",
         "power_lost": f"silent, and sinking at more than {sign.FALLS_MPS:g} m/s in view; or silent, and the hinge bears "
         f"more than {sign.WEIGHT_FELT:g} of the weight where the rotors should carry a quarter or more",
-        "camera_leap": f"marker found elsewhere after images that could not be believed, for {sign.LEAPT_S:g} s; "
+        "camera_leap": f"marker found elsewhere after images that could not be believed, for {reading.LEAPT_S:g} s; "
         "never with a silent UAV",
         "camera_noise": f"variance of the images above {sign.NOISY:g} times what the camera claims",
         "wrench_wrong": f"force over the tool's inertia force outside {sign.WEIGHED[0]:g} to {sign.WEIGHED[1]:g} on any axis, "
         f"{sign.WEIGHED_S:g} s into the self-test's nod, of which the arm made {sign.NODDED[0]:g} to {sign.NODDED[1]:g}; "
         f"or, on an arm that touches nothing and follows its reference, a vertical "
-        f"force that leaps by {sign.ALIVE_N:g} of the tool's weight; or a reading of nothing, not even of the tool",
+        f"force that leaps by {reading.ALIVE_N:g} of the tool's weight; or a reading of nothing, not even of the tool "
+        f"(for {reading.PRESSES_S:g} s where the arm gives way to the cradle)",
         "link_late": f"samples come, and say that commands came, but both ways together more than {1e3 * LATE_S:g} ms late (or "
         f"{1e3 * LATER_S:g} ms more than the scenario says), or one way more than {v.uav_age_ms:g} ms",
         "thrust_short": f"as `magnet_stuck`, after {1e3 * sign.SANK_M:g} mm, and the hinge force says that the rotors give less "
