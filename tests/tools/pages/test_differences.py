@@ -14,10 +14,16 @@ def test_row_is_a_scenario_that_differs(row):
 
 
 def test_page_counts_and_says_why():
-    lost = {**GOOD, "seed": FIRST + 1, "success": False, "state": "lost", "reason": "ended in abort: it fell"}
+    lost = {
+        **GOOD,
+        "seed": FIRST + 1,
+        "success": False,
+        "state": "lost",
+        "reason": "ended in abort after guide: thrust_lost, it sinks (a); now",
+    }
     page = markdown([GOOD, lost])
-    assert "| mass + 20 % | 1 of 2 | 9.5 to 90.5 % | 1 | ended in abort |" in page
-    assert "thrust" not in page.partition("|---|")[2]
+    assert "| mass + 20 % | 1 of 2 | 9.5 to 90.5 % | 1 | ended in abort after guide: thrust_lost |" in page
+    assert "link of" not in page.partition("|---|")[2]
 
 
 def test_what_is_there_is_not_flown_again():
