@@ -98,10 +98,11 @@ def _told(kind: int, joint: int, most: float, arm: ArmModel, scenario: Scenario)
             f"would have to turn at {most:.1f} times the {scenario.limits.joint_speed_share * arm.qd_max[joint]:.2f} rad/s that "
             f"limits.joint_speed_share leaves it; {until}"
         )
+    torque, damping = arm.tau_max[joint], arm.damping[joint]
     return (
-        f"would need {min(most, 99.0):.1f} times the torque that weight and friction, and following the UAV at bounds.uav_speed_mps = "
-        f"{scenario.bounds.uav_speed_mps:g}, leave of {TORQUE:g} of its {arm.tau_max[joint]:.0f} N·m to turn against its damping of "
-        f"{arm.damping[joint]:g} N·m·s/rad; {until}"
+        f"has {damping:g} N·m·s/rad of damping, and its {torque:.0f} N·m cannot turn against that as fast as joining a UAV takes that "
+        f"flies at up to bounds.uav_speed_mps = {scenario.bounds.uav_speed_mps:g}, with its weight and friction; {until}. "
+        f"What works is more of arm.torque_limits_nm, or a file with less damping"
     )
 
 

@@ -4,11 +4,15 @@
 |---|---|---|
 | q | joint positions (n,) | rad |
 | τ₀ | null-space wish of the controller (n,), `control.laws.nullspace` | N·m |
+| w, k_p | torque on the attitude (3,) that errors of the joints' torques make; `control.orientation_kp` | N·m, N·m/rad |
 | N = I − 𝒥⁺𝒥 | projection onto motions that leave the end effector where it is (n, n) | 1 |
 
 The controller lets the arm follow N τ₀ until nothing of it is left: elbow low, joints away from their ends. How fast it gets there
 the joints' dry friction says, which nobody knows: an arm may keep the null space in which it began, sink on its way, or have sunk
 wherever it stays for long. All of `WAYS` have to be clear.
+
+Nor does the end effector stay quite upright: its attitude gives way to the errors of the joints' torques by w/k_p, which in strong
+wrists is degrees, and a plan that is just clear of a singularity may lean into it.
 """
 
 from typing import NamedTuple
@@ -38,6 +42,8 @@ the elbow's pull, 25 N·m/rad: steps do not overshoot."""
 MARGINS, SIGMAS = 2.0, 1.2
 """Margin to the joints' ends and smallest singular value that a plan leaves, over those at which the supervisor stops the arm."""
 
+TORQUE_ERROR = 0.008
+"""Of its limit that a joint's torque may err by at rest: offset 0.5 % and dry friction 0.3 %, as they are published."""
 
 AT_THE_ENDS_M = 0.008
 """By how much clearances may be less at the farthest places to which the arm follows the UAV, where it seldom is, m."""
@@ -130,7 +136,25 @@ def _checked(arm: ArmModel, q: Array, stop: Stop, scenario: Scenario, obstacles:
             f"{where} the arm is near a singularity: smallest singular value {sigma:.3f}; a plan leaves {SIGMAS:g} times "
             f"limits.sigma_min, {SIGMAS * limits.sigma_min:g}"
         )
+    for turn in _leans(arm, scenario.control.orientation_kp):
+        arm.update(q + turn, np.zeros(arm.joints))
+        leant = float(np.linalg.svd(arm.jacobian, compute_uv=False)[-1])
+        if leant < limits.sigma_min:
+            angle = np.rad2deg(np.linalg.norm(arm.jacobian[3:] @ turn))
+            raise WorkspaceError(
+                f"{where} the arm may lean by {angle:.1f}° into a singularity, since joint torques err by {100.0 * TORQUE_ERROR:g} % of "
+                f"their limits: smallest singular value {leant:.3f} there, {sigma:.3f} upright; limits.sigma_min is "
+                f"{limits.sigma_min:g}. A larger control.orientation_kp leans less, and so do torque limits that are not too high"
+            )
     return near.room
+
+
+def _leans(arm: ArmModel, stiffness: float) -> list[Array]:
+    # Changes of the joints (n,), rad, by which the end effector leans about each axis, both ways, as far as errors of the torques,
+    # which are independent of each other, push it.
+    inverse = np.linalg.pinv(arm.jacobian)
+    pushed = np.linalg.norm(inverse.T * (TORQUE_ERROR * arm.tau_max), axis=1)[3:]
+    return [sign * angle * inverse[:, 3 + k] for k, angle in enumerate(pushed / stiffness) for sign in (-1.0, 1.0)]
 
 
 def _told(near: Near) -> str:
