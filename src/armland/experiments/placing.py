@@ -14,6 +14,7 @@ from armland.scenario import Scenario
 
 Made = TypeVar("Made")
 
+
 def placed(
     scenario: Scenario, mission: Mission, refusal: WorkspaceError, make: Callable[[Scenario], Made]
 ) -> tuple[Made, str]:

@@ -66,5 +66,7 @@ def test_light_wrist_gets_gains_that_stop_it_in_time(landing_plan):
 def test_gains_that_swing_are_refused_where_the_user_set_them(landing_plan):
     _, arm = light()
     scenario, _ = light(control={"orientation_kd": 70.0})
-    with pytest.raises(ConfigurationError, match=r"orientation_kd = 70 .* it swings.* at most \d+\.\d\d leaves a margin"):
+    with pytest.raises(
+        ConfigurationError, match=r"orientation_kd = 70 .* it swings.* at most \d+\.\d\d leaves a margin"
+    ):
         steadied(scenario, LANDING, arm, landing_plan.home)

@@ -68,7 +68,9 @@ def paced(
         kind, worst = np.unravel_index(int(seen.max(axis=0).argmax()), seen.shape[1:])
         most = float(seen.max())
         if most > SHARE * SLOWEST:
-            raise WorkspaceError(f"in the phase {phase.name} joint {arm.joint_names[worst]} {_told(kind, worst, most, arm, scenario)}")
+            raise WorkspaceError(
+                f"in the phase {phase.name} joint {arm.joint_names[worst]} {_told(kind, worst, most, arm, scenario)}"
+            )
         times[phase.name] = phase.duration_s * max(most / SHARE, 1.0)
         q = lead(arm, q, b)
     return tuple(
