@@ -82,7 +82,7 @@ def stiff_to_turn(landing_plan, damping):
 
 
 def needed(scenario, arm, q, duration):
-    """Largest torque of the damped joint that follows the UAV in the move from below the catch to the standoff, in N·m, by differences of poses."""
+    """Largest torque of the damped joint that follows the UAV in the move up to the standoff, N·m, by differences of poses."""
     catch, place = np.array(scenario.place.catch_m), scenario.place
     q = lead(arm, q, catch - [0.0, 0.0, place.wait_below_m])
     most, before = 0.0, q

@@ -69,7 +69,7 @@ def paced(
         most = float(seen.max())
         if most > SHARE * SLOWEST:
             raise WorkspaceError(
-                f"in the phase {phase.name} joint {arm.joint_names[worst]} {_told(kind, worst, most, arm, scenario)}"
+                f"in the phase {phase.name} joint {arm.joint_names[worst]} {_told(int(kind), int(worst), most, arm, scenario)}"
             )
         times[phase.name] = phase.duration_s * max(most / SHARE, 1.0)
         q = lead(arm, q, b)
