@@ -11,7 +11,7 @@ from armland.models.posture import UPRIGHT, pose
 from armland.scenario import load_scenario
 
 BELOW = np.array([0.62, 0.0, 0.62])
-HOW = Sinking(elbow=3, pull=5.0, margin=0.25, stiffness=20.0, gain=0.04, longest=0.1, push=np.zeros(7))
+HOW = Sinking(elbow=3, pull=5.0, margin=0.25, stiffness=20.0, gain=0.04, longest=0.1)
 
 
 @pytest.fixture(scope="module")

@@ -56,7 +56,6 @@ class Sinking(NamedTuple):
     stiffness: float  # N·m/rad
     gain: float  # rad per N·m
     longest: float  # rad
-    push: Array  # (n,) N·m, of the joints' own beside it
 
 
 def body_of(arm: ArmModel) -> Body:
@@ -174,7 +173,7 @@ def _newton(b: Body, q: Array, e: Array, J: Array, caution: float) -> None:
 @njit(cache=True)
 def _wish(b: Body, q: Array, s: Sinking, tau: Array) -> None:
     # As `control.laws.nullspace`, without damping: that of an arm at rest.
-    tau[:] = s.push
+    tau[:] = 0.0
     for i in range(s.elbow):
         if b.hinge[i] > 0.5:
             dx, dy = b.anchor[s.elbow, 0] - b.anchor[i, 0], b.anchor[s.elbow, 1] - b.anchor[i, 1]

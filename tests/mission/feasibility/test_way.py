@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from armland.errors import WorkspaceError
-from armland.mission.feasibility import way as way_module
 from armland.mission.feasibility.obstacles import Obstacles
 from armland.mission.feasibility.way import AT_ONCE, WAYS, check_clear, sinking, stops
 from armland.models.nearby import body_of, sink
-from armland.models.parameters import arm_model
 from armland.scenario import load_scenario
 
 
@@ -73,16 +71,5 @@ def test_way_is_followed_with_the_null_space_held_by_friction_too(landing_plan, 
     assert sink(body, high, way[0].point, how._replace(pull=-how.pull), AT_ONCE)
     with pytest.raises(WorkspaceError, match="its null space held by friction"):
         check_clear(arm, high, way, scenario, around)
-    monkeypatch.setattr(way_module, "_pushes", lambda *_: [])
     monkeypatch.delitem(WAYS, ", its null space held by friction")
     assert check_clear(arm, high, way, scenario, around) >= 0.0
-
-
-def test_torque_errors_of_strong_joints_are_planned_with(landing_plan, monkeypatch):
-    """Where each joint may err by what a joint of 600 N·m errs by, the attitude and the null space are anywhere."""
-    scenario, way, around = whole(landing_plan, arm={"torque_limits_nm": [600.0] * 7})
-    arm = arm_model(scenario)
-    with pytest.raises(WorkspaceError, match=r"may lean by \d+\.\d° into a singularity|null space pushed by"):
-        check_clear(arm, landing_plan.home, way, scenario, around)
-    monkeypatch.setattr(way_module, "TORQUE_ERROR", 1e-6)
-    assert check_clear(arm, landing_plan.home, way, scenario, around) > 0.0

@@ -100,7 +100,5 @@ BEST, NEAREST = 0.5, 5.0
 
 NOWHERE = (
     "No place was found for this arm: none within its reach, up and down by the way of a landing, is clear of floor and cradle and at "
-    "the margins to its joints' ends, to singularities and of its torques that the supervisor holds it to, also where "
-    "its joints' torques err by a share of their limits: a file whose limits are above what the arm has errs too much, and "
-    "arm.torque_limits_nm sets them"
+    "the margins to its joints' ends, to singularities and of its torques that the supervisor holds it to"
 )

@@ -4,15 +4,11 @@
 |---|---|---|
 | q | joint positions (n,) | rad |
 | τ₀ | null-space wish of the controller (n,), `control.laws.nullspace` | N·m |
-| w, k_p | torque on the attitude (3,) that errors of the joints' torques make; `control.orientation_kp` | N·m, N·m/rad |
 | N = I − 𝒥⁺𝒥 | projection onto motions that leave the end effector where it is (n, n) | 1 |
 
 The controller lets the arm follow N τ₀ until nothing of it is left: elbow low, joints away from their ends. How fast it gets there
-the joints' dry friction says, which nobody knows: an arm may keep the null space in which it began, sink on its way, or have sunk
-wherever it stays for long. All of `WAYS` have to be clear.
-
-Nor does the end effector stay quite upright: its attitude gives way to the errors of the joints' torques by w/k_p, which in strong
-wrists is degrees, and a plan that is just clear of a singularity may lean into it.
+the joints' dry friction says, which nobody knows: an arm may keep the null space in which it began, or sink on its way. Both of
+`WAYS` have to be clear.
 """
 
 from typing import NamedTuple
@@ -35,12 +31,8 @@ AT_ONCE, ON_THE_WAY = 80, 4
 WAYS = {
     "": (AT_ONCE, ON_THE_WAY),
     ", its null space held by friction": (0, 0),
-    ", its null space sunk": (AT_ONCE, AT_ONCE),
 }
 """How the null space may go along: what is said of it -> steps where the arm waits, and at each point of its way."""
-
-PUSHED = ", its null space pushed by what its torques err by,"
-"""What is said of a null space that sinks to where offsets of the joints' torques let it."""
 
 YIELDING, STEP_RAD = 0.04, 0.1
 """rad per N·m of the wish, and longest step. One over the stiffest push from a joint's end and
@@ -48,9 +40,6 @@ the elbow's pull, 25 N·m/rad: steps do not overshoot."""
 
 MARGINS, SIGMAS = 2.0, 1.2
 """Margin to the joints' ends and smallest singular value that a plan leaves, over those at which the supervisor stops the arm."""
-
-TORQUE_ERROR = 0.008
-"""Of its limit that a joint's torque may err by at rest: offset 0.5 % and dry friction 0.3 %, as they are published."""
 
 AT_THE_ENDS_M = 0.008
 """By how much clearances may be less at the farthest places to which the arm follows the UAV, where it seldom is, m."""
@@ -99,30 +88,13 @@ def check_clear(arm: ArmModel, q: Array, way: list[Stop], scenario: Scenario, ob
         WorkspaceError: what comes too near to what, or which of the supervisor's margins is left, and where.
     """
     body, how, least = body_of(arm), sinking(arm, scenario), np.inf
-    ways = [(told, first, then, how) for told, (first, then) in WAYS.items()]
-    ways += [(PUSHED, AT_ONCE, AT_ONCE, how._replace(push=push)) for push in _pushes(arm, q)]
-    for told, first, then, how in ways:
+    for told, (first, then) in WAYS.items():
         there = q.copy()
         for k, stop in enumerate(way):
             if not sink(body, there, stop.point, how, then if k else first):
                 raise WorkspaceError(f"{_where(stop)} the arm{told} is out of reach")
-            # What is left as a margin is left for such errors: with them only what the supervisor would stop is refused.
-            limit = told == PUSHED
-            room = _checked(
-                arm, there, stop._replace(slack=np.inf) if limit else stop, scenario, obstacles, told, limit
-            )
-            least = least if limit else min(least, room)
+            least = min(least, _checked(arm, there, stop, scenario, obstacles, told))
     return least
-
-
-def _pushes(arm: ArmModel, q: Array) -> list[Array]:
-    # Errors of the joints' torques (n,), N·m, that move the null space most of all that are as likely, both ways.
-    arm.update(q, np.zeros(arm.joints))
-    out, errors = [], TORQUE_ERROR * arm.tau_max
-    for way in np.linalg.svd(arm.jacobian)[2][6:]:
-        worst = errors**2 * way / np.linalg.norm(errors * way)
-        out += [worst, -worst]
-    return out
 
 
 def sinking(arm: ArmModel, scenario: Scenario) -> Sinking:
@@ -133,13 +105,7 @@ def sinking(arm: ArmModel, scenario: Scenario) -> Sinking:
     """
     c = scenario.control
     return Sinking(
-        elbow_of(scenario, arm),
-        c.elbow_force_n,
-        c.range_margin_rad,
-        c.range_stiffness_nm,
-        YIELDING,
-        STEP_RAD,
-        np.zeros(arm.joints),
+        elbow_of(scenario, arm), c.elbow_force_n, c.range_margin_rad, c.range_stiffness_nm, YIELDING, STEP_RAD
     )
 
 
@@ -147,47 +113,26 @@ def _where(stop: Stop) -> str:
     return f"with the end effector at ({', '.join(f'{x:.2f}' for x in stop.point)}) m"
 
 
-def _checked(
-    arm: ArmModel, q: Array, stop: Stop, scenario: Scenario, obstacles: Obstacles, told: str, limit: bool
-) -> float:
+def _checked(arm: ArmModel, q: Array, stop: Stop, scenario: Scenario, obstacles: Obstacles, told: str) -> float:
     arm.update(q, np.zeros(arm.joints))
     near, limits = obstacles.nearest(q, stop.pivot, stop.slack), scenario.limits
-    where, margins, sigmas = f"{_where(stop)}{told}", 1.0 if limit else MARGINS, 1.0 if limit else SIGMAS
+    where = f"{_where(stop)}{told}"
     if near.room < 0.0:
         raise WorkspaceError(f"{where} {_told(near)}")
     gap = np.minimum(q - arm.q_min, arm.q_max - q)
     tight = int(gap.argmin())
-    if gap[tight] < margins * limits.joint_margin_rad:
+    if gap[tight] < MARGINS * limits.joint_margin_rad:
         raise WorkspaceError(
             f"{where} joint {arm.joint_names[tight]} sinks to {gap[tight]:.3f} rad from its range's end; a plan leaves "
-            f"{margins:g} times limits.joint_margin_rad, {margins * limits.joint_margin_rad:g} rad"
+            f"{MARGINS:g} times limits.joint_margin_rad, {MARGINS * limits.joint_margin_rad:g} rad"
         )
     sigma = float(np.linalg.svd(arm.jacobian, compute_uv=False)[-1])
-    if sigma < sigmas * limits.sigma_min:
+    if sigma < SIGMAS * limits.sigma_min:
         raise WorkspaceError(
-            f"{where} the arm is near a singularity: smallest singular value {sigma:.3f}; a plan leaves {sigmas:g} times "
-            f"limits.sigma_min, {sigmas * limits.sigma_min:g}"
+            f"{where} the arm is near a singularity: smallest singular value {sigma:.3f}; a plan leaves {SIGMAS:g} times "
+            f"limits.sigma_min, {SIGMAS * limits.sigma_min:g}"
         )
-    # The same errors that push the null space do not lean the end effector as well as far as they can.
-    for turn in () if limit else _leans(arm, scenario.control.orientation_kp):
-        arm.update(q + turn, np.zeros(arm.joints))
-        leant = float(np.linalg.svd(arm.jacobian, compute_uv=False)[-1])
-        if leant < limits.sigma_min:
-            angle = np.rad2deg(np.linalg.norm(arm.jacobian[3:] @ turn))
-            raise WorkspaceError(
-                f"{where} the arm may lean by {angle:.1f}° into a singularity, as joint torques err by {100.0 * TORQUE_ERROR:g} % of "
-                f"their limits: smallest singular value {leant:.3f} there, {sigma:.3f} upright; limits.sigma_min is "
-                f"{limits.sigma_min:g}. A larger control.orientation_kp leans less, and so do torque limits that are not too high"
-            )
     return near.room
-
-
-def _leans(arm: ArmModel, stiffness: float) -> list[Array]:
-    # Changes of the joints (n,), rad, by which the end effector leans about each axis, both ways, as far as errors of the torques,
-    # which are independent of each other, push it.
-    inverse = np.linalg.pinv(arm.jacobian)
-    pushed = np.linalg.norm(inverse.T * (TORQUE_ERROR * arm.tau_max), axis=1)[3:]
-    return [sign * angle * inverse[:, 3 + k] for k, angle in enumerate(pushed / stiffness) for sign in (-1.0, 1.0)]
 
 
 def _told(near: Near) -> str:
