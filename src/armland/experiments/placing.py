@@ -7,15 +7,12 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from armland.errors import ConfigurationError, WorkspaceError
-from armland.mission.feasibility.placing import BEST, alternatives, kept, refused, told_places
+from armland.mission.feasibility.placing import BEST, MOST, alternatives, kept, refused, told_places
 from armland.mission.table.mission import Mission
 from armland.models.description import ASSETS, resolve
 from armland.scenario import Scenario
 
 Made = TypeVar("Made")
-
-MOST = 4
-"""Places that are tried in full, plant included."""
 
 
 def placed(
@@ -41,4 +38,4 @@ def placed(
             except ConfigurationError:
                 if tried + 1 >= MOST:
                     break
-    raise refused(scenario, mission, refusal) from refusal
+    raise refused(scenario, mission, refusal, make) from refusal

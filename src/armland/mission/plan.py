@@ -15,6 +15,7 @@ from armland.mission.feasibility.launch import Carrying, Launch, plan_launch, ti
 from armland.mission.feasibility.pace import paced
 from armland.mission.feasibility.path import survey_path
 from armland.mission.feasibility.reach import survey, targets
+from armland.mission.feasibility.steadiness import steadied
 from armland.mission.feasibility.touchdown import gently
 from armland.mission.feasibility.weight import check_hinged_thrust, check_weight, flies_on
 from armland.mission.missions.takeoff import gives_speed
@@ -164,10 +165,11 @@ def _flight_plan(scenario: Scenario, mission: Mission, law: str | None, trial: b
     # Contradictions are told before the arm is asked where it can go.
     _table(mission, phases, scenario, flies)
     home = survey(arm, scenario, mission, flies.weight)
+    scenario = steadied(scenario, mission, arm, home)
     if not takes_off:
         check_by_hand(scenario, flies)
         scenario = gently(scenario, arm, home)
-    phases = paced(phases, mission, arm, home, scenario)
+    phases = paced(phases, mission, arm, home, scenario, flies.weight)
     launch: Launch | None = None
     if takes_off and gives_speed(scenario):
         launch = plan_launch(Carrying(arm, arm.qd_max, flies.mass, scenario), home)

@@ -24,6 +24,10 @@ def test_only_what_the_user_set_is_kept(tmp_path):
     assert kept(load_scenario(mine).with_seed(4)) == {"put_down"}
 
 
+def planned(one):
+    return plan(one, "landing")
+
+
 @pytest.fixture(scope="module")
 def too_high():
     return load_scenario("landing", {"place": {"catch_m": [0.62, 0.0, 0.92], "put_down_m": [0.68, 0.0, 0.761]}})
@@ -33,7 +37,7 @@ def test_refusal_names_the_nearest_place_and_it_works(too_high):
     """What the message says is set, and the landing is planned."""
     with pytest.raises(WorkspaceError) as refusal:
         plan(too_high, "landing")
-    told = str(refused(too_high, LANDING, refusal.value))
+    told = str(refused(too_high, LANDING, refusal.value, planned))
     assert told.startswith(str(refusal.value))
     words = told.partition("This arm could catch at ")[2]
     catch, put, home = (
@@ -47,14 +51,14 @@ def test_refusal_names_the_nearest_place_and_it_works(too_high):
 @pytest.mark.slow
 def test_refusal_of_an_arm_that_can_land_nowhere_says_so():
     weak = load_scenario("landing", {"arm": {"torque_limits_nm": [2.0] * 7}})
-    told = str(refused(weak, LANDING, WorkspaceError("joint A2 is too weak")))
+    told = str(refused(weak, LANDING, WorkspaceError("joint A2 is too weak"), planned))
     assert told.startswith("joint A2 is too weak. No place was found for this arm. Of ")
     assert "none takes up to 0.9 of the joints' torques for arm and UAV; at least" in told
 
 
 def test_where_no_single_condition_stands_in_the_way_the_refusal_names_them_all(monkeypatch):
     monkeypatch.setattr(placing, "alternatives", lambda *_: iter(()))
-    assert str(refused(load_scenario("landing"), LANDING, WorkspaceError("no"))) == f"no. {NOWHERE}"
+    assert str(refused(load_scenario("landing"), LANDING, WorkspaceError("no"), planned)) == f"no. {NOWHERE}"
 
 
 def test_slot_is_told_where_it_is_another(too_high):
@@ -69,3 +73,12 @@ def test_a_slot_that_the_user_set_stays(too_high):
     for one in alternatives(narrow, LANDING, frozenset(), 0.5):
         assert (one.cradle.gap_m, one.arm.width_m) == (0.2, 0.17)
         break
+
+
+def test_no_place_is_named_that_is_refused_when_it_is_tried(too_high):
+    def never(one):
+        raise WorkspaceError("a joint is damped too much")
+
+    told = str(refused(too_high, LANDING, WorkspaceError("too high"), never))
+    assert "could catch" not in told
+    assert told.endswith("a joint is damped too much")

@@ -1,6 +1,6 @@
 """Scenarios in which an arm can land, where the one that is wanted does not work: other places, and a slot that a wide arm can pass."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from armland.errors import ConfigurationError, WorkspaceError
 from armland.mission.belief import flyer
@@ -14,6 +14,9 @@ from armland.scenario import Scenario
 
 TRIES = 10
 """Places of each heading that are checked in full, the best first."""
+
+MOST = 4
+"""Places that are tried in full, plant included."""
 
 WIDE_GAP_M, WIDE_ARM_M = 0.29, 0.20
 """Slot for an arm whose wrist is beside its forearm: the skids still reach 2 cm beyond its rails. The arm then follows a UAV sideways
@@ -68,13 +71,22 @@ def told_places(one: Scenario, wanted: Scenario) -> str:
     return text
 
 
-def refused(scenario: Scenario, mission: Mission, refusal: WorkspaceError) -> WorkspaceError:
-    """The refusal of a scenario, with the nearest place that works, or that none was found."""
-    near = next(alternatives(scenario, mission, frozenset(), NEAREST), None)
-    if near is None:
-        return WorkspaceError(f"{refusal}. {nowhere(scenario, mission)}")
-    home = f"place.home_deg = {list(near.place.home_deg or ())}"
-    return WorkspaceError(f"{refusal}. This arm could catch at {told_places(near, scenario)} and {home}")
+def refused(
+    scenario: Scenario, mission: Mission, refusal: WorkspaceError, make: Callable[[Scenario], object]
+) -> WorkspaceError:
+    """The refusal of a scenario, with the nearest place at which `make` refuses nothing, or what stands in the way of all of them."""
+    stands = ""
+    for tried, near in enumerate(alternatives(scenario, mission, frozenset(), NEAREST)):
+        try:
+            make(near)
+        except ConfigurationError as e:
+            stands = stands or f"No place was found for this arm: at {told_places(near, scenario)} {e}"
+            if tried + 1 >= MOST:
+                break
+            continue
+        home = f"place.home_deg = {list(near.place.home_deg or ())}"
+        return WorkspaceError(f"{refusal}. This arm could catch at {told_places(near, scenario)} and {home}")
+    return WorkspaceError(f"{refusal}. {stands or nowhere(scenario, mission)}")
 
 
 def nowhere(scenario: Scenario, mission: Mission) -> str:

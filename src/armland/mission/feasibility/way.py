@@ -6,8 +6,9 @@
 | τ₀ | null-space wish of the controller (n,), `control.laws.nullspace` | N·m |
 | N = I − 𝒥⁺𝒥 | projection onto motions that leave the end effector where it is (n, n) | 1 |
 
-The controller lets the arm follow N τ₀ until nothing of it is left: elbow low, joints away from their ends. It gets there within
-a second or two, so this pose, and not the one that the inverse kinematics happens to find, is what has to be clear.
+The controller lets the arm follow N τ₀ until nothing of it is left: elbow low, joints away from their ends. How fast it gets there
+the joints' dry friction says, which nobody knows: an arm may keep the null space in which it began, or sink on its way. Both of
+`WAYS` have to be clear.
 """
 
 from typing import NamedTuple
@@ -27,13 +28,18 @@ from armland.scenario import Scenario
 AT_ONCE, ON_THE_WAY = 80, 4
 """Steps along the null space where the arm waits, and at each point of its way."""
 
+WAYS = {
+    "": (AT_ONCE, ON_THE_WAY),
+    ", its null space held by friction": (0, 0),
+}
+"""How the null space may go along: what is said of it -> steps where the arm waits, and at each point of its way."""
+
 YIELDING, STEP_RAD = 0.04, 0.1
 """rad per N·m of the wish, and longest step. One over the stiffest push from a joint's end and
 the elbow's pull, 25 N·m/rad: steps do not overshoot."""
 
 MARGINS, SIGMAS = 2.0, 1.2
 """Margin to the joints' ends and smallest singular value that a plan leaves, over those at which the supervisor stops the arm."""
-
 
 AT_THE_ENDS_M = 0.008
 """By how much clearances may be less at the farthest places to which the arm follows the UAV, where it seldom is, m."""
@@ -69,7 +75,7 @@ def stops(points: Array, scenario: Scenario, start: Start) -> list[Stop]:
 
 
 def check_clear(arm: ArmModel, q: Array, way: list[Stop], scenario: Scenario, obstacles: Obstacles) -> float:
-    """Follow the way with the null space sunk; returns the least room that is left to what is around, m.
+    """Follow the way with the null space as `WAYS` have it; returns the least room that is left to what is around, m.
 
     Args:
         arm: the arm model (its state is overwritten).
@@ -81,12 +87,13 @@ def check_clear(arm: ArmModel, q: Array, way: list[Stop], scenario: Scenario, ob
     Raises:
         WorkspaceError: what comes too near to what, or which of the supervisor's margins is left, and where.
     """
-    body, how, q = body_of(arm), sinking(arm, scenario), q.copy()
-    least = _checked(arm, q, way[0], scenario, obstacles)
-    for k, stop in enumerate(way):
-        if not sink(body, q, stop.point, how, ON_THE_WAY if k else AT_ONCE):
-            raise WorkspaceError(f"{_where(stop)} the arm, its null space sunk, is out of reach")
-        least = min(least, _checked(arm, q, stop, scenario, obstacles))
+    body, how, least = body_of(arm), sinking(arm, scenario), np.inf
+    for told, (first, then) in WAYS.items():
+        there = q.copy()
+        for k, stop in enumerate(way):
+            if not sink(body, there, stop.point, how, then if k else first):
+                raise WorkspaceError(f"{_where(stop)} the arm{told} is out of reach")
+            least = min(least, _checked(arm, there, stop, scenario, obstacles, told))
     return least
 
 
@@ -106,10 +113,10 @@ def _where(stop: Stop) -> str:
     return f"with the end effector at ({', '.join(f'{x:.2f}' for x in stop.point)}) m"
 
 
-def _checked(arm: ArmModel, q: Array, stop: Stop, scenario: Scenario, obstacles: Obstacles) -> float:
+def _checked(arm: ArmModel, q: Array, stop: Stop, scenario: Scenario, obstacles: Obstacles, told: str) -> float:
     arm.update(q, np.zeros(arm.joints))
     near, limits = obstacles.nearest(q, stop.pivot, stop.slack), scenario.limits
-    where = _where(stop)
+    where = f"{_where(stop)}{told}"
     if near.room < 0.0:
         raise WorkspaceError(f"{where} {_told(near)}")
     gap = np.minimum(q - arm.q_min, arm.q_max - q)
