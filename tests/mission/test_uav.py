@@ -9,7 +9,7 @@ from armland.mission.table.phases import LINK, UAV
 from armland.mission.told import ASTRAY_M
 from armland.mission.uav import LEANT_MPS2, RECKONED_S, command_uav
 from armland.records import UavMode
-from armland.rotations import from_rotation_vector, matrix, multiply
+from armland.rotations import conjugate, from_rotation_vector, matrix, multiply
 
 LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -622,3 +622,25 @@ def test_what_a_drifting_sensor_says_is_forgotten_at_the_let_go(bench):
     assert kept["hover"][0] > 1.2 * weight
     ask(bench, "miss")
     assert kept["hover"][0] == pytest.approx(weight, rel=0.03)
+
+
+@pytest.mark.parametrize(("phase", "turns"), [("carry", True), ("guide", False)])
+def test_set_point_of_a_uav_on_the_deck_is_that_of_when_it_acts(bench, phase, turns):
+    """The deck rolls at 0.5 rad/s and 2 rad/s²; what arrives 30 ms later must lie on the deck as it is then: ω τ + ½ ω̇ τ².
+
+    One that flies points its thrust in W, whatever the deck does meanwhile.
+    """
+    environment, late = bench.board["environment"], 0.03
+    bench.kept["estimate"]["uplink"] = 1000.0 * late
+    at_station(bench)
+    sent = []
+    for moves in (0, 1):
+        environment["moves"], environment["base_quat"][0] = moves, [1.0, 0.0, 0.0, 0.0]
+        environment["base_omega"], environment["base_alpha"] = [0.5 * moves, 0.0, 0.0], [2.0 * moves, 0.0, 0.0]
+        ask(bench, phase)
+        sent.append(bench.c["uav_quat"][0].copy())
+    expected = from_rotation_vector(np.array([0.5 * late + late**2, 0.0, 0.0]))
+    if turns:
+        np.testing.assert_allclose(multiply(expected, conjugate(sent[1])), [1.0, 0.0, 0.0, 0.0], atol=1e-9)
+    else:
+        np.testing.assert_allclose(bench.kept["act"]["q_d"][0], sent[1], atol=1e-12)

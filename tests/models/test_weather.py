@@ -82,3 +82,12 @@ def test_uav_that_waits_in_wind_is_guided_from_the_first_sight_on():
     first, second, *_ = LANDING.phases(landing(4.0).believed())
     assert (first.name, first.uav, first.guards[0].target) == ("find", "autonomous", "self_test")
     assert (second.name, second.uav, second.seeks) == ("self_test", "station", True)
+
+
+@pytest.mark.parametrize("wind", [0.0, 4.0])
+def test_uav_waits_higher_above_a_deck_that_moves(wind):
+    """By what a hull rises before it is guided, 0.4 m/s for half a second; what the user has set stays."""
+    still, moves = (sized(landing(wind, forecast={"wind_mps": wind, "deck_moves": moves})) for moves in (False, True))
+    assert moves.place.start_above_m - still.place.start_above_m == pytest.approx(0.2)
+    own = landing(wind, forecast={"wind_mps": wind, "deck_moves": True}, place={"start_above_m": 0.3})
+    assert sized(own).place.start_above_m == 0.3

@@ -11,8 +11,11 @@ from armland.models.environment import on_land
 RATE, TICK_S, STATION = 8.0, 1e-3, np.array([0.6, 0.1, 0.9])
 
 
-def ridden(omega, seconds, bias=0.0, heave=0.1, roll=0.0):
-    """Ride for `seconds` on a deck that heaves by `heave`, m, and rolls by `roll`, rad, at `omega`, rad/s; all of it by tick."""
+def ridden(omega, seconds, bias=0.0, heave=0.1, roll=0.0, late=0.0):
+    """Ride for `seconds` on a deck that heaves by `heave`, m, and rolls by `roll`, rad, at `omega`, rad/s; all of it by tick.
+
+    The UAV answers `late`, s.
+    """
     s, e, rows = np.zeros(1, kept_layout()), on_land(), []
     e["moves"] = 1
     for t in np.arange(0.0, seconds, TICK_S):
@@ -21,9 +24,13 @@ def ridden(omega, seconds, bias=0.0, heave=0.1, roll=0.0):
         e["base_quat"], e["gravity"] = R.as_quat(scalar_first=True), R.inv().apply([0.0, 0.0, -9.81])
         e["base_omega"], e["base_alpha"] = [roll * rate, 0.0, 0.0], [roll * push, 0.0, 0.0]
         e["base_v"], e["base_a"] = R.inv().apply([bias, 0.0, heave * rate]), R.inv().apply([0.0, 0.0, heave * push])
-        ride(STATION, RATE, TICK_S, e[0], s[0])
+        ride(STATION, RATE, np.full(3, late), TICK_S, e[0], s[0])
         place = R.apply(STATION) + [0.0, 0.0, heave * swing]
-        rows.append(np.concatenate([place, s["apart"][0], s["aside"][0], s["aside_v"][0], s["aside_a"][0], s["a"][0]]))
+        rows.append(
+            np.concatenate(
+                [place, s["apart"][0], s["aside"][0], s["aside_v"][0], s["aside_a"][0], s["a"][0], s["aside_lead"][0]]
+            )
+        )
     return np.array(rows)
 
 
@@ -53,3 +60,27 @@ def test_seen_from_the_deck_the_motion_is_that_of_what_is_followed():
     np.testing.assert_allclose(np.gradient(aside, TICK_S, axis=0)[5:-5], v[5:-5], atol=1e-3)
     np.testing.assert_allclose(np.gradient(v, TICK_S, axis=0)[5:-5], a[5:-5], atol=5e-3)
     assert np.abs(a).max() > 0.05
+
+
+def test_k3_platform_that_swings_faster_than_the_uav_answers_is_hardly_followed():
+    """λ = λ₀/(1 + (ω τ)²): at 10 rad/s and 0.17 s it is 2.06 rad/s, and what is followed is (K.2)'s share with that λ."""
+    omega, late = 10.0, 0.17
+    rows, t = ridden(omega, 30.0, heave=0.03, late=late), np.arange(0.0, 30.0, TICK_S)
+    rate = RATE / (1.0 + (omega * late) ** 2)
+    share = abs((3.0 * rate**2 * 1j * omega + rate**3) / (1j * omega + rate) ** 3)
+    followed = rows[:, 2] - STATION[2] + rows[:, 5]
+    late_on = t > 25.0
+    assert np.ptp(followed[late_on]) / 0.06 == pytest.approx(share, rel=0.1)
+    # A hull is followed nearly as closely as by a UAV that is never late.
+    apart = [np.abs(ridden(1.5, 12.0, late=by)[8000:, 5]).max() for by in (0.0, late)]
+    assert apart[0] < apart[1] < 1.2 * apart[0]
+
+
+def test_acceleration_that_is_asked_for_is_the_one_of_when_the_uav_answers():
+    """ā + τ ā˙ against ā of τ later; without the lead it is further off by more than three times."""
+    late, after = 0.1, 100
+    rows = ridden(2.0, 10.0, late=late)
+    now, then = rows[5000:-after, 17], rows[5000 + after :, 17]
+    asked = now + rows[5000:-after, 20] - rows[5000:-after, 14]
+    error, without = np.abs(asked - then).max(), np.abs(now - then).max()
+    assert error < without / 3.0

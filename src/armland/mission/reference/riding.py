@@ -5,15 +5,25 @@
 | r_s, v_s | station, and its velocity as one with the deck | m, D; m/s, W |
 | δ, v̄, ā | `ride.apart`, `.v`, `.a` (3,): of what is followed, from the station; its velocity and acceleration | m, m/s, m/s², W |
 | d, ḋ, d̈ | `ride.aside`, `.aside_v`, `.aside_a` (3,): δ as seen from the deck | m, m/s, m/s², D |
-| λ | `told.rides` | rad/s |
+| λ₀, τ | `told.rides`, the fastest; `told.lags` (3,): by how much the UAV answers late, along each axis of W | rad/s, s |
+| V, A | `ride.speed2`, `.push2`: means of |v_s|² and |v̇_s|² over `SEEN_S` | m²/s², m²/s⁴ |
 
 No UAV follows what is faster than its attitude: with the deck's own acceleration fed forward it leans by 10 degrees, late, where
-the deck rolls by one in half a second. What is followed is the station behind a low pass without an error of place at a constant speed,
+the deck rolls by one in half a second, and is further from its station than without. What is followed is the station behind a low pass
+without an error of place at a constant speed,
 
     ā˙ = −λ³ δ + 3λ² (v_s − v̄) − 3λ ā,  δ˙ = v̄ − v_s,   p̄/p_s = (3λ² s + λ³)/(s + λ)³            (K.2)
 
 so a constant error of the velocity does no harm, and no place of the deck need be known. Seen from the deck, with γ of (X.5) at
 r_s + d and R W<-D: d = Rᵀδ, ḋ = Rᵀ(v̄ − v_s) − ω_b × d, d̈ = Rᵀā − g + γ(r_s + d, ḋ). In K.1 the deck's acceleration then cancels.
+
+How fast that is, the deck's motion says by itself: where it swings at ω_c = √(A/V) a UAV that answers τ late follows with the error
+ω_c τ of what it follows, so
+
+    λ = λ₀/(1 + (ω_c τ)²)                                                                              (K.3)
+
+a hull at 1.5 rad/s is followed nearly as fast as can be, a platform at 10 rad/s hardly. And since ā˙ is known, the acceleration that is
+asked for is the one of τ later, ā + τ ā˙: `ride.aside_lead` (3,), m/s², D, in place of d̈.
 """
 
 import numpy as np
@@ -23,20 +33,27 @@ from armland.models.environment import apparent_gravity
 from armland.records import Record
 from armland.rotations import Array, cross, matrix, turned, turned_back
 
+SEEN_S = 4.0
+"""Over which the deck's motion is looked at."""
+
+LIKELY_MPS = 0.1
+"""Speed of the station that is assumed, slow, before it has been: that of a hull in sea state 2."""
+
 
 def kept_layout() -> np.dtype:
     """What going along is remembered by; zeros on land."""
-    names = ("apart", "v", "a", "aside", "aside_v", "aside_a")
-    return np.dtype([("begun", "i8"), *((name, "f8", (3,)) for name in names)])
+    names = ("apart", "v", "a", "aside", "aside_v", "aside_a", "aside_lead")
+    return np.dtype([("begun", "i8"), ("speed2", "f8"), ("push2", "f8"), *((name, "f8", (3,)) for name in names)])
 
 
 @njit(cache=True)
-def ride(station: Array, rate: float, tick_s: float, environment: Record, s: Record) -> None:
-    """One tick of (K.2).
+def ride(station: Array, fastest: float, lags: Array, tick_s: float, environment: Record, s: Record) -> None:
+    """One tick of (K.2) and (K.3).
 
     Args:
         station: r_s (3,), m, D.
-        rate: λ, rad/s.
+        fastest: λ₀, rad/s.
+        lags: τ (3,), s, W.
         tick_s: s.
         environment: of `models.environment.environment_layout`, of a deck that moves.
         s: of `kept_layout`, updated.
@@ -46,17 +63,20 @@ def ride(station: Array, rate: float, tick_s: float, environment: Record, s: Rec
         carried[i] += environment.base_v[i]
     along = turned(R, carried)
     if not s.begun:
-        pushed, s.begun = turned(R, environment.base_a), 1
+        s.begun, s.speed2 = 1, LIKELY_MPS**2
         for i in range(3):
-            s.v[i], s.a[i] = along[i], pushed[i]
-    apart_v = np.empty(3)
+            s.v[i] = along[i]
+    rate = _rate(station, fastest, lags[0], tick_s, carried, environment, s)
+    apart_v, lead = np.empty(3), np.empty(3)
     for i in range(3):
         jerk = rate**2 * (3.0 * (along[i] - s.v[i]) - rate * s.apart[i]) - 3.0 * rate * s.a[i]  # (K.2)
         s.a[i] += jerk * tick_s
+        lead[i] = s.a[i] + lags[i] * jerk
         s.v[i] += s.a[i] * tick_s
         apart_v[i] = s.v[i] - along[i]
         s.apart[i] += apart_v[i] * tick_s
     aside, aside_v, aside_a = turned_back(R, s.apart), turned_back(R, apart_v), turned_back(R, s.a)
+    aside_lead = turned_back(R, lead)
     turns = cross(environment.base_omega, aside)
     for i in range(3):
         aside_v[i] -= turns[i]
@@ -64,3 +84,19 @@ def ride(station: Array, rate: float, tick_s: float, environment: Record, s: Rec
     for i in range(3):
         s.aside[i], s.aside_v[i] = aside[i], aside_v[i]
         s.aside_a[i] = aside_a[i] - environment.gravity[i] + gravity[i]
+        s.aside_lead[i] = aside_lead[i] - environment.gravity[i] + gravity[i]
+
+
+@njit(cache=True)
+def _rate(
+    station: Array, fastest: float, late: float, tick_s: float, carried: Array, environment: Record, s: Record
+) -> float:
+    # λ, from the station's velocity `carried` (3,), m/s, D, and its acceleration.
+    still, gain, speed2, push2 = np.zeros(3), tick_s / SEEN_S, 0.0, 0.0
+    gravity = apparent_gravity(environment, station, still)
+    for i in range(3):
+        speed2 += carried[i] ** 2
+        push2 += (environment.gravity[i] - gravity[i]) ** 2
+    s.speed2 += gain * (speed2 - s.speed2)
+    s.push2 += gain * (push2 - s.push2)
+    return float(fastest / (1.0 + s.push2 / s.speed2 * late**2))  # (K.3)
