@@ -26,11 +26,12 @@ from armland.mission.reference.guided import (
     learn_trim,
     take_over,
 )
+from armland.mission.reference.riding import deck_ahead
 from armland.mission.reference.view import in_view, seek
 from armland.mission.reference.view import told_layout as view_told
 from armland.mission.table.phases import LINK, UAV
 from armland.records import Record, UavMode
-from armland.rotations import Array, conjugate, from_rotation_vector, matrix, multiply, turned
+from armland.rotations import Array, conjugate, matrix, multiply, turned
 
 AUTONOMOUS, STATION, LEVEL, RAMP, BALANCE, OFF, RUN_UP, CRUISE, HINGED = range(len(UAV))
 MODE_AUTONOMOUS, MODE_OFF = UavMode.AUTONOMOUS, UavMode.OFF
@@ -140,8 +141,7 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     s.alone = s.alone + 1 if c.uav_mode == MODE_AUTONOMOUS else 0
     s.sought = s.sought if s.alone > 0 else 0
     # What is kept on the deck must turn with it; where the thrust of one that flies points to is decided in W.
-    ahead = 0.0 if what in (STATION, CRUISE) else b.kept.estimate.uplink * p.tick_s
-    _send(_to_own(align, ahead, b.environment), s, c)
+    _send(_to_own(align, what not in (STATION, CRUISE), p, b.environment, s.ride), s, c)
 
 
 @njit(cache=True)
@@ -152,13 +152,12 @@ def _unseen(e: Record, known: Record, p: Record) -> bool:
 
 
 @njit(cache=True)
-def _to_own(align: Array, ahead_s: float, environment: Record) -> Array:
-    # From the deck, as it will be `ahead_s` later, into the UAV's own idea of the inertial frame, in which it holds its attitude.
+def _to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Record) -> Array:
+    # From the deck, as it will be for one that `stands` on it, into the UAV's own idea of the inertial frame, in which it holds its
+    # attitude.
     if environment.moves:
-        turn = np.empty(3)
-        for i in range(3):
-            turn[i] = (environment.base_omega[i] + 0.5 * environment.base_alpha[i] * ahead_s) * ahead_s
-        return multiply(multiply(environment.base_quat.copy(), from_rotation_vector(turn)), conjugate(align))
+        level = deck_ahead(p.lags[0], environment, ride) if stands else environment.base_quat.copy()
+        return multiply(level, conjugate(align))
     return conjugate(align)
 
 

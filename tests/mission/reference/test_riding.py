@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lsim
 from scipy.spatial.transform import Rotation
 
-from armland.mission.reference.riding import kept_layout, ride
+from armland.mission.reference.riding import deck_ahead, kept_layout, ride
 from armland.models.environment import on_land
 
 RATE, TICK_S, STATION = 8.0, 1e-3, np.array([0.6, 0.1, 0.9])
@@ -84,3 +84,36 @@ def test_acceleration_that_is_asked_for_is_the_one_of_when_the_uav_answers():
     asked = now + rows[5000:-after, 20] - rows[5000:-after, 14]
     error, without = np.abs(asked - then).max(), np.abs(now - then).max()
     assert error < without / 3.0
+
+
+def levels(omega, late, roll=0.05, seconds=20.0):
+    """Roll of the deck and of the level (K.4), rad, by tick, on a deck that rolls about a mean of 0.03 rad."""
+    s, e, rows = np.zeros(1, kept_layout()), on_land(), []
+    e["moves"] = 1
+    for t in np.arange(0.0, seconds, TICK_S):
+        angle, rate, push = (
+            0.03 + roll * np.sin(omega * t),
+            roll * omega * np.cos(omega * t),
+            -roll * omega**2 * np.sin(omega * t),
+        )
+        R = Rotation.from_rotvec([angle, 0.0, 0.0])
+        e["base_quat"], e["gravity"] = R.as_quat(scalar_first=True), R.inv().apply([0.0, 0.0, -9.81])
+        e["base_omega"], e["base_alpha"] = [rate, 0.0, 0.0], [push, 0.0, 0.0]
+        e["base_v"], e["base_a"] = 0.0, 0.0
+        ride(STATION, RATE, np.full(3, late), TICK_S, e[0], s[0])
+        level = Rotation.from_quat(deck_ahead(late, e[0], s[0]), scalar_first=True).as_rotvec()
+        rows.append([angle, level[0]])
+    return np.array(rows)
+
+
+@pytest.mark.parametrize(("omega", "apart", "alone"), [(2.0, 0.25, 0.33), (10.0, 1.2, 1.45)])
+def test_k4_uav_that_answers_late_stands_on_the_deck(omega, apart, alone):
+    """The UAV has the level `late` later. At 2 rad/s it leans against the deck by less than a quarter of the roll, at 10 rad/s by no
+    more than one that does not turn; told the deck's attitude of now, by 2 sin(ωτ/2) of it: by a third, and by half as much again."""
+    late, after, roll = 0.17, 170, 0.05
+    rows = levels(omega, late)[12000:]
+    deck, level = rows[after:, 0], rows[:-after, 1]
+    assert np.abs(level - deck).max() < apart * roll
+    assert np.abs(rows[:-after, 0] - deck).max() > alone * roll
+    # A list is no swing: it is followed. Over whole periods.
+    assert np.mean(level[-round(2000.0 * np.pi) :]) == pytest.approx(0.03, abs=2e-3)

@@ -24,6 +24,14 @@ How fast that is, the deck's motion says by itself: where it swings at ω_c = �
 
 a hull at 1.5 rad/s is followed nearly as fast as can be, a platform at 10 rad/s hardly. And since ā˙ is known, the acceleration that is
 asked for is the one of τ later, ā + τ ā˙: `ride.aside_lead` (3,), m/s², D, in place of d̈.
+
+A UAV on the arm is to stand on the deck at any moment, by an attitude that is as late. With R̄ the deck's mean attitude, `ride.mean`,
+and R_τ the one that it will have τ later, by ω_b and ω̇_b, its level is
+
+    R̄ turned by σ of the way to R_τ,  σ = 1/(1 + (ω_c τ)²)                                            (K.4)
+
+At 2 rad/s that is what the deck does; at 10 rad/s, where a UAV on its hinge answers a third of a period late and half as far again, it
+is the deck's mean.
 """
 
 import numpy as np
@@ -31,7 +39,7 @@ from numba import njit
 
 from armland.models.environment import apparent_gravity
 from armland.records import Record
-from armland.rotations import Array, cross, matrix, turned, turned_back
+from armland.rotations import Array, cross, from_rotation_vector, matrix, multiply, rotation_error, turned, turned_back
 
 SEEN_S = 4.0
 """Over which the deck's motion is looked at."""
@@ -43,7 +51,8 @@ LIKELY_MPS = 0.1
 def kept_layout() -> np.dtype:
     """What going along is remembered by; zeros on land."""
     names = ("apart", "v", "a", "aside", "aside_v", "aside_a", "aside_lead")
-    return np.dtype([("begun", "i8"), ("speed2", "f8"), ("push2", "f8"), *((name, "f8", (3,)) for name in names)])
+    seen = [("begun", "i8"), ("speed2", "f8"), ("push2", "f8"), ("share", "f8"), ("mean", "f8", (4,))]
+    return np.dtype([*seen, *((name, "f8", (3,)) for name in names)])
 
 
 @njit(cache=True)
@@ -64,9 +73,12 @@ def ride(station: Array, fastest: float, lags: Array, tick_s: float, environment
     along = turned(R, carried)
     if not s.begun:
         s.begun, s.speed2 = 1, LIKELY_MPS**2
+        for i in range(4):
+            s.mean[i] = environment.base_quat[i]
         for i in range(3):
             s.v[i] = along[i]
-    rate = _rate(station, fastest, lags[0], tick_s, carried, environment, s)
+    _look_at(station, lags[0], tick_s, carried, environment, s)
+    rate = fastest * s.share  # (K.3)
     apart_v, lead = np.empty(3), np.empty(3)
     for i in range(3):
         jerk = rate**2 * (3.0 * (along[i] - s.v[i]) - rate * s.apart[i]) - 3.0 * rate * s.a[i]  # (K.2)
@@ -88,10 +100,19 @@ def ride(station: Array, fastest: float, lags: Array, tick_s: float, environment
 
 
 @njit(cache=True)
-def _rate(
-    station: Array, fastest: float, late: float, tick_s: float, carried: Array, environment: Record, s: Record
-) -> float:
-    # λ, from the station's velocity `carried` (3,), m/s, D, and its acceleration.
+def deck_ahead(ahead_s: float, environment: Record, s: Record) -> Array:
+    """The level (4,), W<-D, at which a UAV on the arm is held that answers `ahead_s`, s, late; `s` of `kept_layout`."""
+    turn, w, h = np.empty(3), environment.base_omega, environment.base_alpha
+    for i in range(3):
+        turn[i] = (w[i] + 0.5 * h[i] * ahead_s) * ahead_s
+    coming = multiply(environment.base_quat.copy(), from_rotation_vector(turn))
+    mean = s.mean.copy()
+    return multiply(from_rotation_vector(s.share * rotation_error(matrix(mean), matrix(coming))), mean)  # (K.4)
+
+
+@njit(cache=True)
+def _look_at(station: Array, late: float, tick_s: float, carried: Array, environment: Record, s: Record) -> None:
+    # V, A, σ and R̄, from the station's velocity `carried` (3,), m/s, D, and its acceleration.
     still, gain, speed2, push2 = np.zeros(3), tick_s / SEEN_S, 0.0, 0.0
     gravity = apparent_gravity(environment, station, still)
     for i in range(3):
@@ -99,4 +120,9 @@ def _rate(
         push2 += (environment.gravity[i] - gravity[i]) ** 2
     s.speed2 += gain * (speed2 - s.speed2)
     s.push2 += gain * (push2 - s.push2)
-    return float(fastest / (1.0 + s.push2 / s.speed2 * late**2))  # (K.3)
+    s.share = 1.0 / (1.0 + s.push2 / s.speed2 * late**2)
+    before = s.mean.copy()
+    back = rotation_error(matrix(before), matrix(environment.base_quat.copy()))
+    mean = multiply(from_rotation_vector(gain * back), before)
+    for i in range(4):
+        s.mean[i] = mean[i]
