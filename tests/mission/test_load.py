@@ -335,3 +335,17 @@ def test_weight_is_that_at_rest_wherever_it_hangs(bench):
     for _ in range(1500):
         weigh(p["weight"][0] * (0.9 - 0.5), 0.5, p[0], s[0])
     assert s["weight"][0] == pytest.approx(p["weight"][0], rel=1e-6)
+
+
+@pytest.mark.parametrize("gain", [0.8, 0.0, -1.0])
+def test_nod_on_a_platform_tells_the_sensors_gain_though_the_deck_makes_most_of_the_force(bench, gain):
+    """The deck makes three times the nod's force, against it on one axis: taken off as −m γ a gain of 0.8 would count as 1.4 there."""
+    mass, nod = bench.told["estimate"]["wrench"]["mass"][0], np.array([0.5, 0.5, 0.5])
+    bench.board["environment"]["moves"] = 1
+    for k in range(500):
+        swing = np.sin(2.0 * np.pi * k / 500)
+        a, deck = nod * swing, np.array([0.9, -1.5, 0.3]) * swing
+        bench.kept["refer"]["a"], bench.board["environment"]["base_a"] = a, deck
+        bench.m["wrench"][0, :3] = bench.board["arm"]["rotation"][0].T @ (gain * mass * (a + deck + [0.0, 0.0, 9.81]))
+        feel_nod(bench.m[0], bench.b)
+    np.testing.assert_allclose(bench.kept["estimate"]["nod"]["gain"][0], gain, atol=1e-6)

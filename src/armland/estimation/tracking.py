@@ -43,7 +43,7 @@ def steady_gains(period_s: float, density: float, sigma: float) -> Array:
 
 @njit(cache=True)
 def begin(sample: Array, s: Record) -> None:
-    """Begin at `sample` (3,), at rest."""
+    """Begin at `sample` (3,), in its own unit, at rest."""
     for i in range(3):
         s.value[i], s.first[i], s.second[i] = sample[i], 0.0, 0.0
 
@@ -53,7 +53,7 @@ def track(sample: Array, since_s: float, gains: Array, s: Record) -> None:
     """One sample.
 
     Args:
-        sample: z (3,), u.
+        sample: z (3,), in the unit of the signal, u.
         since_s: time since the sample before, s.
         gains: k (3,).
         s: of `kept_layout`, updated.

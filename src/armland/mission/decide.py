@@ -179,7 +179,7 @@ def load_expected(row: Record, elapsed: float, e: Record, hover: float, weight: 
         e: estimate.
         hover: thrust command that carries the weight, N.
         weight: as the force-torque sensor finds it, N.
-        felt: what of it is felt on the deck, of `load.heaviness`.
+        felt: share of it that is felt on the deck, 1, of `load.heaviness`.
         p: what deciding is told.
     """
     if row.arm == TRACK:

@@ -86,20 +86,20 @@ def feel_nod(m: Record, b: Record) -> None:
     and the arm's speed with the one asked for.
 
     A constant bias does not change the first. A dead sensor gives 0, a reversed one −1. An arm that sticks makes part of the nod, and
-    the tool's inertia force is as small. What the deck's motion makes of the tool's weight, −m_t γ, is taken off before: with 0.3 m/s²
-    it is a third of what the nod makes.
+    the tool's inertia force is as small. On a deck that moves it is weighed by all that moves it, a − γ: on a platform the deck makes
+    three times as much force as the nod. Taken off as −m_t γ, what sensor and belief of m_t err of that would count as the nod's.
 
     Args:
         m: measurement.
         b: board; what the estimate keeps of the nod is updated.
     """
     n, mass = b.kept.estimate.nod, b.told.estimate.wrench.mass
-    force, a, v, w = turned(b.arm.rotation, m.wrench[:3]), b.kept.refer.a, b.kept.refer.v, b.tick.estimate.v
+    force, a, v, w = turned(b.arm.rotation, m.wrench[:3]), b.kept.refer.a.copy(), b.kept.refer.v, b.tick.estimate.v
     n.count += 1
     if b.environment.moves:
         gravity = apparent_gravity(b.environment, b.tick.estimate.r, v)
         for i in range(3):
-            force[i] += mass * gravity[i]
+            a[i] -= gravity[i]
     for i in range(3):
         n.a[i] += a[i]
         n.f[i] += force[i]
@@ -141,7 +141,7 @@ def lift_felt(force: float, thrust: float, hover: float, felt: float, p: Record)
         force: vertical hinge force, N.
         thrust: that acts as far as is known, N.
         hover: that command as it was known, N.
-        felt: of `heaviness`.
+        felt: share of the weight that is felt, 1, of `heaviness`.
         p: what the estimate is told.
     """
     lift = p.weight * felt - force

@@ -27,6 +27,7 @@ from armland.mission.reference.guided import (
     take_over,
 )
 from armland.mission.reference.riding import deck_ahead
+from armland.mission.reference.riding import told_layout as riding_told
 from armland.mission.reference.view import in_view, seek
 from armland.mission.reference.view import told_layout as view_told
 from armland.mission.table.phases import LINK, UAV
@@ -86,8 +87,7 @@ def told_layout() -> np.dtype:
             ("gust_share", "f8"),  # of the disturbance in the plate filter
             ("gust_max", "f8"),  # m/s²
             ("coming_max", "f8"),  # m/s², of the acceleration that is carried on over the uplink's delay
-            ("rides", "f8"),  # rad/s, of the deck's motion with which the UAV goes along, at most
-            ("lags", "f8", (3,)),  # s, by which it answers late, sideways and upwards
+            *riding_told(),
             ("sight", view_told()),
         ]
     )

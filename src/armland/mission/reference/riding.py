@@ -48,6 +48,12 @@ LIKELY_MPS = 0.1
 """Speed of the station that is assumed, slow, before it has been: that of a hull in sea state 2."""
 
 
+def told_layout() -> list[tuple]:
+    """Of what commanding the UAV is told, what going along needs."""
+    # rad/s, at most; s, by which the UAV answers late, along each axis of W
+    return [("rides", "f8"), ("lags", "f8", (3,))]
+
+
 def kept_layout() -> np.dtype:
     """What going along is remembered by; zeros on land."""
     names = ("apart", "v", "a", "aside", "aside_v", "aside_a", "aside_lead")

@@ -15,8 +15,8 @@ from armland.mission.reference.moves import BACK_OFF, MOVE, NOD, YIELD
 from armland.mission.supervisor.table import FAULT, FAULTS
 from armland.mission.table.arrays import FAULT_ROWS
 from armland.mission.table.phases import LINK, UAV
+from armland.models.environment import climb
 from armland.records import Record
-from armland.rotations import cross, matrix
 
 COUNT = len(FAULTS)
 AUTONOMOUS, STATION, RAMP, BALANCE = (UAV.index(name) for name in ("autonomous", "station", "ramp", "balance"))
@@ -233,11 +233,11 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     # It knows its motors' speeds. A lean alone does not say so: a gust, a blow and the rails make a healthy UAV lean.
     signs[ROTOR_LOST] = held and m.uav_weak == 1 and not signs[UAV_SILENT] and known.grip_far == 0 and not signs[SLIP]
     felt = e.hinge_force[2] > WEIGHT_FELT * known.weight and kept.act.thrust > 0.25 * known.weight
-    falls = not held and known.seen == 1 and e.plate_age < LEAPT_S and _rises(e, b.environment) < -FALLS_MPS
+    rises = climb(b.environment, e.plate, e.plate_v)
+    falls = not held and known.seen == 1 and e.plate_age < LEAPT_S and rises < -FALLS_MPS
     signs[POWER_LOST] = signs[UAV_SILENT] and (falls or (held and felt))
     strains = kept.act.thrust >= min(0.99 * p.thrust_max, STRAINS * kept.act.hover)
     # A loss that its rotors can make up for is learnt: the ground catches it sooner than the UAV's own hover.
-    rises = _rises(e, b.environment)
     sinks = kept.act.thrust >= 0.99 * p.thrust_max and rises < -SINKS_MPS
     known_speed = e.plate_valid == 1 and known.filter.scattered == 0
     sinks = row.uav == STATION and known_speed and (sinks or (strains and rises < -p.plunges))
@@ -266,18 +266,6 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     torn = signs[OVERLOAD] and e.hinge_force[2] < 0.0
     signs[MAGNET_STUCK] = gone and leaves and (pulls or torn or (follows and not lies))
     signs[OVERLOAD] = signs[OVERLOAD] and not signs[MAGNET_STUCK]
-
-
-@njit(cache=True)
-def _rises(e: Record, environment: Record) -> float:
-    # Velocity of the plate, m/s, upwards: a deck that rises is no UAV that sinks.
-    if not environment.moves:
-        return float(e.plate_v[2])
-    carried, R = cross(environment.base_omega, e.plate), matrix(environment.base_quat)
-    upwards = 0.0
-    for i in range(3):
-        upwards += R[2, i] * (e.plate_v[i] + environment.base_v[i] + carried[i])
-    return upwards
 
 
 @njit(cache=True)
