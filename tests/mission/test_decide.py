@@ -88,7 +88,7 @@ def test_bias_is_known_after_three_blocks(bench, blocks, known):
 def test_force_is_explained_where_arm_cradle_and_rotors_leave_no_doubt(bench, phase, elapsed, height, expected):
     weight = bench.told["decide"]["weight"][0]
     bench.e["thrust"], bench.e["r"][0, 2] = 0.5 * weight, height
-    force = load_expected(bench.enter(phase), elapsed, bench.e[0], weight, weight, bench.told["decide"][0])
+    force = load_expected(bench.enter(phase), elapsed, bench.e[0], weight, weight, 1.0, bench.told["decide"][0])
     if expected is None:
         assert np.isnan(force)
     else:
@@ -100,7 +100,7 @@ def test_while_the_hinge_is_freed_the_thrust_that_was_asked_for_explains_the_for
     bench.e["thrust"] = 0.8 * weight
     row = bench.enter("hand_back")
     # The command that carries the weight is being found out: it says nothing.
-    assert load_expected(row, 0.1, bench.e[0], 1.0, weight, bench.told["decide"][0]) == pytest.approx(0.2 * weight)
+    assert load_expected(row, 0.1, bench.e[0], 1.0, weight, 1.0, bench.told["decide"][0]) == pytest.approx(0.2 * weight)
 
 
 def test_capture_begins_without_a_disturbance_and_with_the_arms_own_motion(bench):
@@ -261,17 +261,17 @@ def test_phase_that_is_no_miss_is_no_retry(bench):
 def test_force_counts_as_unexplained_only_after_the_whole_of_its_time(bench, phase, elapsed):
     row, p = bench.enter(phase), bench.told["decide"][0]
     weight = p["weight"]
-    assert np.isnan(load_expected(row, elapsed - 0.01, bench.e[0], weight, weight, p))
-    assert load_expected(row, elapsed + 0.01, bench.e[0], weight, weight, p) == 0.0
+    assert np.isnan(load_expected(row, elapsed - 0.01, bench.e[0], weight, weight, 1.0, p))
+    assert load_expected(row, elapsed + 0.01, bench.e[0], weight, weight, 1.0, p) == 0.0
 
 
 def test_what_the_rotors_leave_is_by_the_command_that_carries_the_weight(bench):
     """A command of 4 N is said to carry 5 N: at 1 N a quarter is carried; where nothing is known of it, all is."""
     row, p = bench.enter("carry"), bench.told["decide"][0]
     bench.e["thrust"], bench.e["r"][0, 2] = 1.0, 0.8
-    assert load_expected(row, 0.1, bench.e[0], 4.0, 5.0, p) == pytest.approx(0.75 * 5.0)
+    assert load_expected(row, 0.1, bench.e[0], 4.0, 5.0, 1.0, p) == pytest.approx(0.75 * 5.0)
     bench.e["thrust"] = 0.0
-    assert load_expected(row, 0.1, bench.e[0], 0.0, 5.0, p) == pytest.approx(5.0)
+    assert load_expected(row, 0.1, bench.e[0], 0.0, 5.0, 1.0, p) == pytest.approx(5.0)
 
 
 @pytest.mark.parametrize(("before", "after", "anew"), [("miss", "guide", True), ("guide", "approach", False)])

@@ -308,3 +308,44 @@ def test_in_wind_the_hinge_says_what_the_rotors_make_of_a_command_and_the_weight
 @pytest.mark.parametrize(("gives", "share"), [(1.0, 0.2), (0.3, 0.6)])
 def test_rotors_that_hardly_turn_or_lift_say_nothing_of_a_command(bench, gives, share):
     assert lifting(bench, gives, share, 1.0) == pytest.approx(gives)
+
+
+@pytest.mark.parametrize("falls", [0.0, 0.8])
+def test_deck_that_falls_away_is_no_cradle_that_carries(bench, falls):
+    """Of a UAV at rest on a hull that falls with 0.8 m/s² the arm carries m (g − 0.8): the cradle's share is nothing.
+
+    Without the deck's acceleration it would seem to carry a twelfth, more than counts as touched.
+    """
+    weight, mass, shares = bench.told["estimate"]["weight"][0], bench.told["estimate"]["mass"][0], []
+    for known in (1, 0):
+        bench.board["environment"]["moves"], bench.board["environment"]["base_a"] = known, [0.0, 0.0, -falls]
+        bench.kept["estimate"]["weight"], bench.e["thrust"], bench.kept["act"]["hover"] = weight, 0.0, weight
+        bench.m["wrench"] = reading(bench, np.array([0.0, 0.0, mass * (9.81 - falls)]), np.array([0.0, 0.0, -falls]))
+        for _ in range(600):
+            estimate_load(False, True, 0.0, bench.b)
+        shares.append(bench.e["ground_share"][0])
+    assert shares[0] == pytest.approx(0.0, abs=2e-3)
+    assert shares[1] == pytest.approx(falls / 9.81, abs=2e-3)
+
+
+def test_weight_is_that_at_rest_wherever_it_hangs(bench):
+    """A deck that falls takes weight off the arm and none off the UAV."""
+    p, s = bench.told["estimate"], bench.kept["estimate"]
+    s["felt"] = 0.9
+    for _ in range(1500):
+        weigh(p["weight"][0] * (0.9 - 0.5), 0.5, p[0], s[0])
+    assert s["weight"][0] == pytest.approx(p["weight"][0], rel=1e-6)
+
+
+@pytest.mark.parametrize("gain", [0.8, 0.0, -1.0])
+def test_nod_on_a_platform_tells_the_sensors_gain_though_the_deck_makes_most_of_the_force(bench, gain):
+    """The deck makes three times the nod's force, against it on one axis: taken off as −m γ a gain of 0.8 would count as 1.4 there."""
+    mass, nod = bench.told["estimate"]["wrench"]["mass"][0], np.array([0.5, 0.5, 0.5])
+    bench.board["environment"]["moves"] = 1
+    for k in range(500):
+        swing = np.sin(2.0 * np.pi * k / 500)
+        a, deck = nod * swing, np.array([0.9, -1.5, 0.3]) * swing
+        bench.kept["refer"]["a"], bench.board["environment"]["base_a"] = a, deck
+        bench.m["wrench"][0, :3] = bench.board["arm"]["rotation"][0].T @ (gain * mass * (a + deck + [0.0, 0.0, 9.81]))
+        feel_nod(bench.m[0], bench.b)
+    np.testing.assert_allclose(bench.kept["estimate"]["nod"]["gain"][0], gain, atol=1e-6)

@@ -254,3 +254,16 @@ def test_images_that_show_the_plate_in_its_place_end_the_row_of_those_that_do_no
         found.append(int(s["grip_far"][0]))
     # 0.4 of the first, then towards 20 mm: 8, 5, 3, 10, 14, 16, 18, 11, 6 mm.
     assert found == [0, 0, 0, 0, 1, 2, 3, 4, 0]
+
+
+@pytest.mark.parametrize(("phase", "stays"), [("carry", True), ("unload", True), ("guide", False)])
+def test_uav_that_arm_or_cradle_carry_goes_along_with_the_deck(bench, phase, stays):
+    """A hull that surges with 0.6 m/s²: for 0.2 s without an image a UAV that flies is left behind, a carried one not."""
+    flight = Flight(bench)
+    flight.fly(300)
+    before = bench.e["plate"][0].copy()
+    bench.board["environment"]["moves"], bench.board["environment"]["base_a"] = 1, [0.6, 0.0, 0.0]
+    bench.enter(phase)
+    flight.fly(200, seen=False)
+    left = bench.e["plate"][0] - before
+    np.testing.assert_allclose(left, [0.0 if stays else -0.5 * 0.6 * 0.2**2, 0.0, 0.0], atol=1e-3)

@@ -9,7 +9,7 @@ from armland.mission.table.phases import LINK, UAV
 from armland.mission.told import ASTRAY_M
 from armland.mission.uav import LEANT_MPS2, RECKONED_S, command_uav
 from armland.records import UavMode
-from armland.rotations import from_rotation_vector, matrix, multiply
+from armland.rotations import conjugate, from_rotation_vector, matrix, multiply
 
 LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -622,3 +622,20 @@ def test_what_a_drifting_sensor_says_is_forgotten_at_the_let_go(bench):
     assert kept["hover"][0] > 1.2 * weight
     ask(bench, "miss")
     assert kept["hover"][0] == pytest.approx(weight, rel=0.03)
+
+
+@pytest.mark.parametrize(("phase", "stands"), [("carry", True), ("guide", False)])
+def test_uav_on_the_arm_is_held_at_the_decks_level_of_when_it_answers(bench, phase, stands):
+    """(K.4) of a deck that rolls at 0.5 rad/s and 2 rad/s², slow enough to be followed: ω τ + ½ ω̇ τ² from where it is.
+
+    One that flies points its thrust in W, whatever the deck does meanwhile.
+    """
+    environment, lag = bench.board["environment"], bench.told["act"]["uav"]["lags"][0, 0]
+    at_station(bench)
+    environment["moves"], environment["base_quat"][0] = 1, [1.0, 0.0, 0.0, 0.0]
+    environment["base_omega"], environment["base_alpha"] = [0.5, 0.0, 0.0], [2.0, 0.0, 0.0]
+    bench.kept["act"]["ride"]["share"], bench.kept["act"]["ride"]["mean"] = 1.0, [1.0, 0.0, 0.0, 0.0]
+    ask(bench, phase)
+    level = multiply(bench.c["uav_quat"][0], conjugate(bench.kept["act"]["q_d"][0]))
+    turn = np.array([0.5 * lag + lag**2, 0.0, 0.0]) if stands else np.zeros(3)
+    np.testing.assert_allclose(level, from_rotation_vector(turn), atol=1e-9)

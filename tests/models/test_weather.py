@@ -126,3 +126,12 @@ def test_carried_uav_keeps_its_heading_in_gusts_by_that_thrust(share, kept):
     turned = np.rad2deg(2.0 * np.arctan2(table["truth.quat.3"], table["truth.quat.0"]))
     standing = table["truth.cradle_force.2"] > 3.0
     assert (float(np.abs(turned[standing]).max()) < 3.0) is kept
+
+
+@pytest.mark.parametrize("wind", [0.0, 4.0])
+def test_uav_waits_higher_above_a_deck_that_moves(wind):
+    """By what a hull rises before it is guided, 0.4 m/s for half a second; what the user has set stays."""
+    still, moves = (sized(landing(wind, forecast={"wind_mps": wind, "deck_moves": moves})) for moves in (False, True))
+    assert moves.place.start_above_m - still.place.start_above_m == pytest.approx(0.2)
+    own = landing(wind, forecast={"wind_mps": wind, "deck_moves": True}, place={"start_above_m": 0.3})
+    assert sized(own).place.start_above_m == 0.3

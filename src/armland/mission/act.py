@@ -104,7 +104,8 @@ def act(b: Record, path: Array) -> None:
     acceleration = hold(row, b, path) if row.held else move_free(b)
     torque_arm(row.arm, acceleration, b)
     if b.environment.moves:
-        ride(b.told.act.uav.station, b.told.act.uav.rides, b.told.act.uav.tick_s, b.environment, s.ride)
+        uav = b.told.act.uav
+        ride(uav.station, uav.rides, uav.lags, uav.tick_s, b.environment, s.ride)
     command_uav(row, b.kept.estimate.filter.align.quat, b)
     s.magnet = c.magnet
     b.kept.estimate.thrust_log[m.tick % RING] = s.thrust
@@ -198,7 +199,7 @@ def load_force(b: Record) -> None:
     for i in range(2):
         tilt = x if i == 0 else y
         c.force[i] = mass * (s.sway_a[i] + lever * fall(tilt, s.sway_a[i], rate, g))
-    c.force[2] = max(b.told.estimate.weight - e.thrust, 0.0)
+    c.force[2] = max(b.told.estimate.weight * b.kept.estimate.felt - e.thrust, 0.0)
 
 
 @njit(cache=True)

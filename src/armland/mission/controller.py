@@ -100,6 +100,7 @@ class Controller:
         kept["estimate"]["thrust_log"] = kept["estimate"]["acting"] = kept["act"]["thrust"] = thrust
         kept["estimate"]["uplink"] = self.plan.told["estimate"]["uplink"]
         kept["estimate"]["weight"] = self.plan.told["estimate"]["weight"]
+        kept["estimate"]["felt"] = 1.0
         kept["act"]["hover"], kept["act"]["q_d"][:, 0] = self.plan.weight_n, 1.0
         kept["decide"]["held"] = self.board["table"]["phases"]["held"][:, 0]
 

@@ -101,8 +101,9 @@ def decide(b: Record) -> None:
     row, now = b.table.phases[s.phase], b.tick.measurement.tick
     elapsed = (now - s.begin) * p.tick_s
     fill_signals(elapsed, b)
+    known = b.kept.estimate
     magnet_on = (b.kept.act.magnet == MAGNET_ON and elapsed > COIL_S) or row.magnet == MAGNET_TEST
-    expected = load_expected(row, elapsed, b.tick.estimate, b.kept.act.hover, b.kept.estimate.weight, p)
+    expected = load_expected(row, elapsed, b.tick.estimate, b.kept.act.hover, known.weight, known.felt, p)
     fault = find_fault(expected, magnet_on, s.phase, b)
     new = b.table.faults[fault, s.phase] if fault else next_phase(s.phase, elapsed, s, b.table)
     if fault:
@@ -166,7 +167,7 @@ def _lean(quat: Array, asked: Array) -> float:
 
 
 @njit(cache=True)
-def load_expected(row: Record, elapsed: float, e: Record, hover: float, weight: float, p: Record) -> float:
+def load_expected(row: Record, elapsed: float, e: Record, hover: float, weight: float, felt: float, p: Record) -> float:
     """Vertical hinge force, N, that load and thrust explain, where they do; else NaN.
 
     None where the arm follows the plate from below, where it has had the time to learn the sensor's bias or to draw back, and
@@ -178,6 +179,7 @@ def load_expected(row: Record, elapsed: float, e: Record, hover: float, weight: 
         e: estimate.
         hover: thrust command that carries the weight, N.
         weight: as the force-torque sensor finds it, N.
+        felt: share of it that is felt on the deck, 1, of `load.heaviness`.
         p: what deciding is told.
     """
     if row.arm == TRACK:
@@ -188,9 +190,9 @@ def load_expected(row: Record, elapsed: float, e: Record, hover: float, weight: 
         return 0.0 if elapsed > FREED_S else np.nan
     if row.uav == BALANCE:
         # What carries the weight is being found out: until then it is the thrust that was asked for.
-        return float(weight - e.thrust)
+        return float(weight * felt - e.thrust)
     if row.held and (row.observe or e.r[2] > p.clear_z):
-        return float(weight * (1.0 - e.thrust / max(hover, 1e-3)))
+        return float(weight * (felt - e.thrust / max(hover, 1e-3)))
     return np.nan
 
 

@@ -73,6 +73,7 @@ def told_layout() -> np.dtype:
             ("wrench", wrench.told_layout()),
             ("contact", contact.told_layout()),
             ("observer", disturbance.told_layout()),
+            ("deck", deck.told_layout()),
         ]
     )
 
@@ -110,6 +111,7 @@ def kept_layout(joints: int) -> np.dtype:
             ("sample", "i8"),  # the stamp of the newest one
             ("arrived", "i8"),  # tick at which that came
             ("weight", "f8"),  # N, of all that flies, as the force-torque sensor finds it
+            ("felt", "f8"),  # what one weighs on the deck over what one weighs at rest; on land 1
             ("calm", "f8", (3,)),  # N, hinge force, averaged [D]
             ("filter", layouts.kept_layout()),
             ("plate", layouts.plate_layout()),
@@ -131,7 +133,7 @@ def screen(b: Record) -> None:
         deck.as_sent(m, s.good)
     s.bad = screened(m, s.good, s.same, held, p.joint_leap, p.attitude_leap, p.tick_s)
     if m.deck_known:
-        deck.know_deck(m, p.gravity, p.tick_s, s.deck, b.environment)
+        deck.know_deck(m, p.gravity, p.tick_s, p.deck, s.deck, b.environment)
         deck.turn_into_deck(m, b.environment, p.tick_s)
 
 

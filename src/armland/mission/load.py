@@ -54,7 +54,8 @@ def estimate_load(free: bool, magnet: bool, retreat: float, b: Record) -> None:
     up = 1.0 - 2.0 * (e.quat[1] ** 2 + e.quat[2] ** 2)
     # By what carries the weight in hover: what the rotors really give of what they are asked for, nobody measures.
     lift = e.thrust * s.weight / max(b.kept.act.hover, 1e-3)
-    detect(force, lift * up, s.weight, magnet, retreat, p.contact, s.contact, s.load)
+    s.felt = heaviness(b.environment, gravity[2])
+    detect(force, lift * up, s.weight * s.felt, magnet, retreat, p.contact, s.contact, s.load)
     e.arm_share, e.ground_share = s.load.arm_share, s.load.ground_share
     for i in range(3):
         # A force that is not known gives way to nothing.
@@ -62,9 +63,21 @@ def estimate_load(free: bool, magnet: bool, retreat: float, b: Record) -> None:
         s.calm[i] = s.calm[i] + p.calm_gain * (e.hinge_force[i] - s.calm[i]) if p.calm_gain < 1.0 else e.hinge_force[i]
     if known and row.held and row.observe and p.learns and e.r[2] > b.told.decide.clear_z:
         if p.windy:
-            b.kept.act.hover = lift_felt(force[2], e.thrust, b.kept.act.hover, p)
+            b.kept.act.hover = lift_felt(force[2], e.thrust, b.kept.act.hover, s.felt, p)
         else:
             weigh(force[2], e.thrust / max(b.kept.act.hover, 1e-3), p, s)
+
+
+@njit(cache=True)
+def heaviness(environment: Record, gravity_z: float) -> float:
+    """What one weighs on the deck over what one weighs at rest, −γ_z/g, of `gravity_z` = γ_z, m/s², D; on land exactly 1.
+
+    A hull that falls with 0.8 m/s² takes a twelfth of the load off the arm, as much as a cradle that begins to carry.
+    """
+    if not environment.moves:
+        return 1.0
+    g = environment.gravity
+    return float(-gravity_z / np.sqrt(g[0] ** 2 + g[1] ** 2 + g[2] ** 2))
 
 
 @njit(cache=True)
@@ -73,20 +86,20 @@ def feel_nod(m: Record, b: Record) -> None:
     and the arm's speed with the one asked for.
 
     A constant bias does not change the first. A dead sensor gives 0, a reversed one −1. An arm that sticks makes part of the nod, and
-    the tool's inertia force is as small. What the deck's motion makes of the tool's weight, −m_t γ, is taken off before: with 0.3 m/s²
-    it is a third of what the nod makes.
+    the tool's inertia force is as small. On a deck that moves it is weighed by all that moves it, a − γ: on a platform the deck makes
+    three times as much force as the nod. Taken off as −m_t γ, what sensor and belief of m_t err of that would count as the nod's.
 
     Args:
         m: measurement.
         b: board; what the estimate keeps of the nod is updated.
     """
     n, mass = b.kept.estimate.nod, b.told.estimate.wrench.mass
-    force, a, v, w = turned(b.arm.rotation, m.wrench[:3]), b.kept.refer.a, b.kept.refer.v, b.tick.estimate.v
+    force, a, v, w = turned(b.arm.rotation, m.wrench[:3]), b.kept.refer.a.copy(), b.kept.refer.v, b.tick.estimate.v
     n.count += 1
     if b.environment.moves:
         gravity = apparent_gravity(b.environment, b.tick.estimate.r, v)
         for i in range(3):
-            force[i] += mass * gravity[i]
+            a[i] -= gravity[i]
     for i in range(3):
         n.a[i] += a[i]
         n.f[i] += force[i]
@@ -112,13 +125,13 @@ def weigh(force: float, rotors: float, p: Record, s: Record) -> None:
     """
     if rotors > MOST_ROTORS:
         return
-    found = force / (1.0 - rotors)
+    found = force / (s.felt - rotors)
     if abs(found - p.weight) < LEARNT_SHARE * p.weight:
         s.weight += p.tick_s / WEIGHED_S * (found - s.weight)
 
 
 @njit(cache=True)
-def lift_felt(force: float, thrust: float, hover: float, p: Record) -> float:
+def lift_felt(force: float, thrust: float, hover: float, felt: float, p: Record) -> float:
     """The command that would carry the weight of a UAV that hangs on the arm in wind, N: T W/(W − F_z), averaged.
 
     There it is not the weight that is in doubt: level on the hinge the same command lifts up to 1.4 times as much as leaning in
@@ -128,9 +141,10 @@ def lift_felt(force: float, thrust: float, hover: float, p: Record) -> float:
         force: vertical hinge force, N.
         thrust: that acts as far as is known, N.
         hover: that command as it was known, N.
+        felt: share of the weight that is felt, 1, of `heaviness`.
         p: what the estimate is told.
     """
-    lift = p.weight - force
+    lift = p.weight * felt - force
     if thrust < LEAST_ROTORS * p.weight or lift < LEAST_ROTORS * p.weight:
         return hover
     found = min(max(thrust * p.weight / lift, hover * (1.0 - LEARNT_SHARE)), hover * (1.0 + LEARNT_SHARE))

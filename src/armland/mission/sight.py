@@ -35,14 +35,19 @@ AUTONOMOUS, STATION, LEVEL, CRUISE = (UAV.index(name) for name in ("autonomous",
 
 
 @njit(cache=True)
+def flies(row: Record) -> bool:
+    """Whether a UAV is borne by its rotors alone in the phase `row`."""
+    alone = row.uav == AUTONOMOUS or row.uav == STATION or row.uav == CRUISE
+    return bool(alone or (row.uav == LEVEL and row.magnet != MAGNET_ON))
+
+
+@njit(cache=True)
 def lift_of(row: Record, act: Record, p: Record, e: Record) -> float:
     """Force along the UAV's z axis that lifts it, N: of the rotors where it flies, else the weight.
 
     Where arm or cradle carry, they take what the rotors leave: nothing accelerates much.
     """
-    flies = row.uav == AUTONOMOUS or row.uav == STATION or row.uav == CRUISE
-    flies = flies or (row.uav == LEVEL and row.magnet != MAGNET_ON)
-    return float(e.thrust * p.weight / max(act.hover, 1e-3) if flies else p.weight)
+    return float(e.thrust * p.weight / max(act.hover, 1e-3) if flies(row) else p.weight)
 
 
 @njit(cache=True)
@@ -128,6 +133,9 @@ def estimate_plate(lift: float, push: Array, b: Record) -> None:
     for i in range(3):
         eye[i] += b.arm.position[i]
     gravity = apparent_gravity(b.environment, e.plate, e.plate_v)
+    if b.environment.moves and not flies(b.table.phases[b.kept.decide.phase]):
+        # What arm or cradle carry goes along with the deck, whatever that does.
+        lift, push = 0.0, push - np.array(gravity)
     follow(head(m), lift, push, gravity, eye, quaternion_of(b.arm.rotation), p.filter, s.filter)
     know(p.filter, s.filter, s.plate)
     for i in range(3):

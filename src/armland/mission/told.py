@@ -10,7 +10,7 @@ from armland.control.laws.realisation import told as realisation_told
 from armland.control.laws.rigid_body import ExactGains
 from armland.control.laws.settings import Row
 from armland.control.laws.settings import told as law_told
-from armland.estimation import contact, disturbance, wrench
+from armland.estimation import contact, deck, disturbance, wrench
 from armland.estimation.plate import layouts
 from armland.estimation.plate.layouts import FELT_S
 from armland.mission.belief import Flyer
@@ -147,7 +147,7 @@ def _estimate(p: Records, t: Telling) -> None:
     p["windy"] = expected(s).mean > 0.0
     gust = FELT * s.uav.drag_nspm / t.flyer.mass * expected(s).gust(STRONGEST)
     p["filter"] = layouts.told(s, t.flyer.mass, t.flyer.body.lever, gust)
-    p["wrench"], p["contact"] = wrench.told(s), contact.told(s)
+    p["wrench"], p["contact"], p["deck"] = wrench.told(s), contact.told(s), deck.told(s)
     bandwidth, most = s.estimation.load_observer_rad_s, s.estimation.load_observer_limit_n
     if hinged:
         bandwidth, most = (s.control.observer_rad_s if t.switches.observer else 0.0), s.control.observer_limit_n
@@ -222,6 +222,9 @@ def _uav(p: Records, t: Telling) -> None:
     p["astray"] = ASTRAY_M if wind.mean > 0.0 else np.inf
     p["leant"] = max(LEANT_MPS2, drag * wind.gust(STRONGEST))
     p["rides"], p["coming_max"], p["vertical"] = RIDES_RAD_S, COMING_MPS2, station.vertical
+    # An attitude under kp and kd is late by kd/kp, whatever it turns; thrust by the rotors' lag.
+    uplink, o = 1e-3 * s.link.uplink_delay_ms, s.onboard
+    p["lags"] = uplink + np.array([o.kd_nms[0] / o.kp_nm[0], o.kd_nms[1] / o.kp_nm[1], s.rotors.time_constant_s])
     p["tilt_max"], p["gust_share"], p["gust_max"] = station.tilt_max_rad, station.gust_share, station.gust_max_mps2
     p["sight"] = view.told(s, t.flyer.body.lever, wind.lean(drag / t.flyer.gravity, GUST))
 

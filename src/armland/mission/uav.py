@@ -26,6 +26,8 @@ from armland.mission.reference.guided import (
     learn_trim,
     take_over,
 )
+from armland.mission.reference.riding import deck_ahead
+from armland.mission.reference.riding import told_layout as riding_told
 from armland.mission.reference.view import in_view, seek
 from armland.mission.reference.view import told_layout as view_told
 from armland.mission.table.phases import LINK, UAV
@@ -85,7 +87,7 @@ def told_layout() -> np.dtype:
             ("gust_share", "f8"),  # of the disturbance in the plate filter
             ("gust_max", "f8"),  # m/s²
             ("coming_max", "f8"),  # m/s², of the acceleration that is carried on over the uplink's delay
-            ("rides", "f8"),  # rad/s, of the deck's motion with which the UAV goes along
+            *riding_told(),
             ("sight", view_told()),
         ]
     )
@@ -122,7 +124,7 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     elif what == RAMP:
         if row.link == CAUGHT:
             learn_shortfall(b)
-        _ramp(row.share * s.hover, row.link == HELD, b.kept.estimate.weight, e, p, s)
+        _ramp(row.share * s.hover, row.link == HELD, b.kept.estimate, e, p, s)
         _level(p, s)
         if row.share == 0.0 and s.thrust <= p.thrust_min:
             s.thrust, c.uav_mode = 0.0, MODE_OFF
@@ -138,7 +140,8 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
         s.thrust = c.thrust if row.held else p.hinged
     s.alone = s.alone + 1 if c.uav_mode == MODE_AUTONOMOUS else 0
     s.sought = s.sought if s.alone > 0 else 0
-    _send(_to_own(align, b.environment), s, c)
+    # What is kept on the deck must turn with it; where the thrust of one that flies points to is decided in W.
+    _send(_to_own(align, what not in (STATION, CRUISE), p, b.environment, s.ride), s, c)
 
 
 @njit(cache=True)
@@ -149,10 +152,12 @@ def _unseen(e: Record, known: Record, p: Record) -> bool:
 
 
 @njit(cache=True)
-def _to_own(align: Array, environment: Record) -> Array:
-    # From the deck into the UAV's own idea of the inertial frame, in which it holds its attitude.
+def _to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Record) -> Array:
+    # From the deck, as it will be for one that `stands` on it, into the UAV's own idea of the inertial frame, in which it holds its
+    # attitude.
     if environment.moves:
-        return multiply(environment.base_quat.copy(), conjugate(align))
+        level = deck_ahead(p.lags[0], environment, ride) if stands else environment.base_quat.copy()
+        return multiply(level, conjugate(align))
     return conjugate(align)
 
 
@@ -190,10 +195,10 @@ def _free_of_force(e: Record, p: Record, s: Record) -> None:
 
 
 @njit(cache=True)
-def _ramp(target: float, held: bool, weight: float, e: Record, p: Record, s: Record) -> None:
+def _ramp(target: float, held: bool, known: Record, e: Record, p: Record, s: Record) -> None:
     step = p.thrust_rate * p.tick_s
     if held and target < s.thrust:
         # By now the arm must carry what the rotors no longer do.
-        expected = weight * (1.0 - e.thrust / max(s.hover, 1e-3))
+        expected = known.weight * (known.felt - e.thrust / max(s.hover, 1e-3))
         step *= min(max(1.0 - (expected - e.hinge_force[2]) / p.force_slack, 0.0), 1.0)
     s.thrust += min(max(target - s.thrust, -step), step)

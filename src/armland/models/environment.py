@@ -30,7 +30,7 @@ from numba import njit
 
 from armland.models.chain import Views
 from armland.records import Record, Records
-from armland.rotations import Array, cross, turned, turned_back
+from armland.rotations import Array, cross, matrix, turned, turned_back
 
 STANDARD_GRAVITY = 9.81
 """m/s², for closed forms on land."""
@@ -66,6 +66,21 @@ def apparent_gravity(environment: Record, r: Array, v: Array) -> tuple[float, fl
         g[1] - a[1] - 2.0 * (w[2] * v[0] - w[0] * v[2]) - (h[2] * r[0] - h[0] * r[2]) - (w[1] * along - r[1] * square),
         g[2] - a[2] - 2.0 * (w[0] * v[1] - w[1] * v[0]) - (h[0] * r[1] - h[1] * r[0]) - (w[2] * along - r[2] * square),
     )  # (X.5)
+
+
+@njit(cache=True)
+def climb(environment: Record, r: Array, v: Array) -> float:
+    """Velocity upwards in W, m/s, of a point at r (3,), m, that the deck sees move with v (3,), m/s, both D.
+
+    A deck that rises below a UAV is no UAV that sinks.
+    """
+    if not environment.moves:
+        return float(v[2])
+    carried, up = cross(environment.base_omega, r), matrix(environment.base_quat)[2]
+    upwards = 0.0
+    for i in range(3):
+        upwards += up[i] * (v[i] + environment.base_v[i] + carried[i])
+    return upwards
 
 
 @njit(cache=True)

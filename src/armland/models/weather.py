@@ -35,6 +35,9 @@ LENGTH_M, WAITS = 44.0, 3.0
 """Length of turbulence along the wind at 20 ft, h/(0.177 + 0.000823 h)^1.2 in feet: over the mean wind it is the time that a gust takes
 to pass. For how many of them a run has time beyond one in calm air."""
 
+RISES_MPS, FOUND_S = 0.4, 0.5
+"""Speed with which a hull in sea state 3 rises, mean of its highest third; time until a UAV that hovers in W is seen and guided."""
+
 SPARE_RAD, MOST_RAD = 0.05, 0.52
 """Lean that is left to move the UAV while it holds against the strongest gust; largest that an autopilot of this kind is set to:
 AR.Drone, `euler_angle_max`."""
@@ -68,17 +71,19 @@ def expected(scenario: Scenario) -> Wind:
 
 
 def started(scenario: Scenario, mass: float) -> dict[str, float]:
-    """What is done differently before a flight in wind, by dotted key; nothing in calm.
+    """What is done differently before a flight in wind or above a deck that moves, by dotted key; nothing in calm.
 
-    The UAV is brought to above the arm, higher by what a gust takes it down before its own hover answers, and is let lean.
+    The UAV is brought to above the arm, higher by what a gust takes it down before its own hover answers and by what a deck rises
+    before it is guided, and in wind it is let lean.
 
     Args:
         scenario: as it flies.
         mass: kg, of all that flies.
     """
     wind, g, own = expected(scenario), float(np.linalg.norm(scenario.environment.gravity_mps2)), scenario.onboard.hover
+    above = scenario.place.start_above_m + (RISES_MPS * FOUND_S if scenario.foretold_deck else 0.0)
     if wind.mean <= 0.0:
-        return {}
+        return {"place.start_above_m": above} if scenario.foretold_deck else {}
     rate = scenario.uav.drag_nspm / mass
     lean = min(wind.lean(rate / g, STRONGEST) + SPARE_RAD, MOST_RAD)
     down = GUST * rate * wind.sigma / (own.k_position * own.k_velocity + own.k_integral)
@@ -86,7 +91,7 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
     longer = 0.0 if scenario.air.trace or scenario.sea.trace else WAITS * LENGTH_M / wind.mean
     return {
         "run.duration_s": scenario.run.duration_s + longer,
-        "place.start_above_m": scenario.place.start_above_m + down,
+        "place.start_above_m": above + down,
         "onboard.hover.tilt_max_rad": max(own.tilt_max_rad, lean),
     }
 

@@ -677,3 +677,12 @@ def test_uav_that_lies_on_the_arm_is_told_from_a_plate_that_sticks(bench, loss, 
     mass = bench.told["estimate"]["mass"][0]
     bench.e["hinge_force"][0, 2] = -1.5 * mass + W - 1.2 * W * (1.0 - loss)
     assert find(bench, LONG, ["magnet_stuck", "thrust_short"], held=0, arm=MOVE) == found
+
+
+@pytest.mark.parametrize(("heaves", "found"), [(0.6, "none"), (0.0, "thrust_lost")])
+def test_deck_that_rises_is_no_uav_that_sinks(bench, heaves, found):
+    """Seen from the deck both sink alike: one hovers while the hull rises with 0.6 m/s, the other falls towards a hull at rest."""
+    bench.board["environment"]["moves"], bench.board["environment"]["base_v"] = 1, [0.0, 0.0, heaves]
+    bench.board["environment"]["base_quat"][0, 0] = 1.0
+    bench.kept["act"]["thrust"], bench.e["plate_v"] = 1.2 * weight(bench), [0.0, 0.0, -0.6]
+    assert find(bench, LONG, held=0, uav=AUTONOMOUS) == found

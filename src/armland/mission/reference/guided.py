@@ -80,8 +80,8 @@ def learn_shortfall(b: Record) -> None:
         if since == 0 and seen - s.hover > p.shortfall:
             s.hover, s.before, s.integral[2] = seen, seen, seen / p.mass - p.gravity
         return
-    weight = b.kept.estimate.weight
-    missing = e.hinge_force[2] - weight * (1.0 - e.thrust / max(s.hover, 1e-3))
+    weight, felt = b.kept.estimate.weight, b.kept.estimate.felt
+    missing = e.hinge_force[2] - weight * (felt - e.thrust / max(s.hover, 1e-3))
     s.short += p.tick_s / SHORT_S * (missing - s.short)
     s.falls_short = 1 if s.short > p.shortfall else s.falls_short
     if s.falls_short:
@@ -215,7 +215,7 @@ def keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
     rates = (p.k_position, p.k_velocity, p.k_integral, p.speed_max, p.integral_max, p.tilt_max)
     gains = StationGains(p.mass, period, *rates, p.thrust_min, p.thrust_max, p.vertical)
     gravity = apparent_gravity(b.environment, position, velocity)
-    reference = StationReference(wanted, going, s.ride.aside_a.copy(), p.heading)
+    reference = StationReference(wanted, going, s.ride.aside_lead.copy(), p.heading)
     thrust, q_d, integral = keep_station(position, velocity, e.quat, reference, wind, gains, held, gravity)
     s.thrust = thrust
     for i in range(3):

@@ -17,6 +17,7 @@ from armland.mission.supervisor.rising import DRIFTS_S, needed
 from armland.mission.supervisor.table import FAULT, FAULTS
 from armland.mission.table.arrays import FAULT_ROWS
 from armland.mission.table.phases import LINK, UAV
+from armland.models.environment import climb
 from armland.records import Record
 
 COUNT = len(FAULTS)
@@ -222,14 +223,15 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     # It knows its motors' speeds. A lean alone does not say so: a gust, a blow and the rails make a healthy UAV lean.
     signs[ROTOR_LOST] = held and m.uav_weak == 1 and not signs[UAV_SILENT] and known.grip_far == 0 and not signs[SLIP]
     felt = e.hinge_force[2] > WEIGHT_FELT * known.weight and kept.act.thrust > 0.25 * known.weight
-    falls = not held and known.seen == 1 and e.plate_age < LEAPT_S and e.plate_v[2] < -FALLS_MPS
+    rises = climb(b.environment, e.plate, e.plate_v)
+    falls = not held and known.seen == 1 and e.plate_age < LEAPT_S and rises < -FALLS_MPS
     signs[POWER_LOST] = signs[UAV_SILENT] and (falls or (held and felt))
     strains = kept.act.thrust >= min(0.99 * p.thrust_max, STRAINS * kept.act.hover)
     # A loss that its rotors can make up for is learnt: the ground catches it sooner than the UAV's own hover.
-    sinks = kept.act.thrust >= 0.99 * p.thrust_max and e.plate_v[2] < -SINKS_MPS
+    sinks = kept.act.thrust >= 0.99 * p.thrust_max and rises < -SINKS_MPS
     known_speed = e.plate_valid == 1 and known.filter.scattered == 0
-    sinks = row.uav == STATION and known_speed and (sinks or (strains and e.plate_v[2] < -p.plunges))
-    sinks = sinks or (row.uav == AUTONOMOUS and known_speed and e.plate_v[2] < -p.plunges)
+    sinks = row.uav == STATION and known_speed and (sinks or (strains and rises < -p.plunges))
+    sinks = sinks or (row.uav == AUTONOMOUS and known_speed and rises < -p.plunges)
     # What is still being learnt says nothing: a sensor that drifts is never done.
     felt_short = row.uav == RAMP and row.link == CAUGHT and abs(kept.act.short) < b.told.act.uav.shortfall
     weighed = (row.uav == AUTONOMOUS and kept.act.trimmed > 0) or felt_short or row.uav == BALANCE
@@ -240,7 +242,7 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     if kept.act.magnet != 0:
         seen.off, seen.carried, seen.zero = m.tick, row.observe, seen.short
     # It moves with the arm: F = m a + W (1 − f_T/T_h), and more by what its rotors fail to give.
-    made = b.told.estimate.mass * kept.refer.a[2] + known.weight * (1.0 - e.thrust / max(kept.act.hover, 1e-3))
+    made = b.told.estimate.mass * kept.refer.a[2] + known.weight * (known.felt - e.thrust / max(kept.act.hover, 1e-3))
     seen.short += p.tick_s / SHORT_S * (e.hinge_force[2] - made - seen.short)
     gone = (m.tick - seen.off) * p.tick_s > STUCK_S and seen.off > 0
     leaves = row.arm == BACK_OFF or row.arm == MOVE

@@ -189,10 +189,10 @@ def sized(scenario: Scenario) -> Scenario:
     for first in (True, False):
         scenario = scenario.resolved(_changes(scenario, [r for r in RULES if (r.key in FIRST) is first]))
     scenario = scenario.resolved(_shifted(scenario))
-    return scenario.resolved(_in_wind(scenario)) if scenario.foretold_mps > 0.0 else scenario
+    return scenario.resolved(_outdoors(scenario)) if scenario.foretold_mps > 0.0 or scenario.foretold_deck else scenario
 
 
-def _in_wind(scenario: Scenario) -> dict[str, Any]:
+def _outdoors(scenario: Scenario) -> dict[str, Any]:
     out, mass = dict[str, Any](), uav_parameters(scenario).mass + plate_mass(scenario)
     for key, value in started(scenario, mass).items():
         if not is_settled(scenario, key):
