@@ -7,7 +7,7 @@ from armland.estimation.plate.layouts import FELT_S
 from armland.mission.reference.guided import CAUGHT_S
 from armland.mission.table.phases import LINK, UAV
 from armland.mission.told import ASTRAY_M
-from armland.mission.uav import LEANT_MPS2, RECKONED_S, command_uav
+from armland.mission.uav import LEANT_MPS2, RECKONED_S, SEATS_S, command_uav
 from armland.records import UavMode
 from armland.rotations import conjugate, from_rotation_vector, matrix, multiply
 
@@ -60,6 +60,24 @@ def test_thrust_waits_where_nobody_takes_over(bench):
 def test_rotors_stop_at_the_end_of_the_last_ramp(bench):
     assert Hanging(bench, 1.0).run(4000, "unload") == 0.0
     assert bench.c["uav_mode"][0] == UavMode.OFF
+
+
+@pytest.mark.parametrize("leans", [1, 0])
+def test_uav_caught_in_wind_lies_on_the_magnet_leaning_before_it_pulls(bench, leans):
+    """In calm air it is levelled, and pulls at once."""
+    kept, told, hover = bench.kept["act"], bench.told["act"]["uav"], 5.0
+    kept["hover"], kept["thrust"], kept["hovered"] = hover, hover, [2.0, 0.0]
+    told["sight"]["leans"] = leans
+    pull = bench.plan.scenario.bounds.pull_test_n
+    bench.e["thrust"] = hover
+    bench.kept["decide"]["begin"] = bench.m["tick"]
+    early = ask(bench, "capture", round(0.8 * SEATS_S / 1e-3))
+    lean = 2.0 * np.arctan2(kept["q_d"][0, 2], kept["q_d"][0, 0])
+    assert (early < hover) is bool(leans)
+    assert lean == pytest.approx(np.arctan(2.0 / 9.81) if leans else 0.0, abs=1e-3)
+    late = ask(bench, "capture", 1200)
+    assert late - hover == pytest.approx(hover - early if leans else late - hover)
+    assert late > hover + 0.5 * pull
 
 
 def test_uav_that_nobody_vouches_for_hovers_by_itself(bench):

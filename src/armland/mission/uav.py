@@ -48,6 +48,9 @@ when a gust ends, and it is reckoned for as long as the pose filter does."""
 LEANT_MPS2 = 2.0
 """Largest horizontal acceleration that a UAV on the hinge holds against by leaning: 11 degrees; more where more wind is expected."""
 
+SEATS_S = 0.25
+"""Time for which a UAV that was caught in wind lies on the magnet with some of its weight before the pull test."""
+
 
 @lru_cache
 def told_layout() -> np.dtype:
@@ -124,8 +127,7 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     elif what == RAMP:
         if row.link == CAUGHT:
             learn_shortfall(b)
-        _ramp(row.share * s.hover, row.link == HELD, b.kept.estimate, e, p, s)
-        _level(p, s)
+        _relieve(tick, row, b)
         if row.share == 0.0 and s.thrust <= p.thrust_min:
             s.thrust, c.uav_mode = 0.0, MODE_OFF
     elif what == RUN_UP:
@@ -175,6 +177,31 @@ def _send(own: Array, s: Record, c: Record) -> None:
 @njit(cache=True)
 def _level(p: Record, s: Record) -> None:
     s.q_d[0], s.q_d[1], s.q_d[2], s.q_d[3] = np.cos(0.5 * p.heading), 0.0, 0.0, np.sin(0.5 * p.heading)
+
+
+@njit(cache=True)
+def _relieve(tick: int, row: Record, b: Record) -> None:
+    # Thrust and attitude of a UAV on the magnet.
+    p, s = b.told.act.uav, b.kept.act
+    windy = row.link == CAUGHT and p.sight.leans
+    if windy and (tick - b.kept.decide.begin) * p.tick_s < SEATS_S:
+        # A gust that lifts tears at a plate that touches with an edge: its weight lays it flat before it is pulled.
+        s.thrust = min(s.thrust, (2.0 - row.share) * s.hover)
+    else:
+        _ramp(row.share * s.hover, row.link == HELD, b.kept.estimate, b.tick.estimate, p, s)
+    if windy:
+        # Levelled at once it would lift more by a third: no wind blows down through the rotors then.
+        _lean(p, s)
+    else:
+        _level(p, s)
+
+
+@njit(cache=True)
+def _lean(p: Record, s: Record) -> None:
+    # As it has held against the wind.
+    q_d = attitude_of(np.array([s.hovered[0], s.hovered[1], p.gravity]), p.heading)
+    for i in range(4):
+        s.q_d[i] = q_d[i]
 
 
 @njit(cache=True)
