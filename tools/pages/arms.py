@@ -5,7 +5,6 @@ to which each flight is added as a line, so that it can be stopped and goes on; 
 flown again.
 """
 
-import json
 import multiprocessing
 import os
 import sys
@@ -17,6 +16,7 @@ from armland.cli.options import load
 from armland.errors import ConfigurationError, ModelError
 from armland.experiments.episode import Flight, fly_prepared, prepare
 from armland.experiments.judge.figures import bounds
+from pages.keeping import completed
 
 PAGE = Path(__file__).parents[2] / "docs" / "arm.md"
 
@@ -184,11 +184,7 @@ def main() -> None:
     """Fly what is missing and write the table."""
     folder, path = Path(sys.argv[1]), Path(sys.argv[2])
     seeds = range(1, 1 + int(sys.argv[3] if len(sys.argv) > 3 else 1))
-    there = [json.loads(line) for line in path.read_text("utf-8").splitlines()] if path.is_file() else []
-    with path.open("a", encoding="utf-8") as file:
-        for r in flown(folder, list(there), seeds):
-            there.append(r)
-            print(json.dumps(r), file=file, flush=True)
+    there = completed(path, lambda there: flown(folder, there, seeds))
     page = PAGE.read_text("utf-8").partition(HEADING)[0]
     PAGE.write_text(f"{page}{HEADING}\n\n{markdown(there)}", encoding="utf-8")
 

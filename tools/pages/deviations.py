@@ -4,7 +4,6 @@
 and added to it line by line, so that it can be stopped and goes on.
 """
 
-import json
 import sys
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -17,6 +16,7 @@ from armland.experiments.margins.corners import COMPANIONS, at, largest, nested
 from armland.mission.supervisor.table import FAULTS
 from armland.scenario import load_scenario
 from armland.scenario.deviation import rows
+from pages.keeping import completed
 from pages.truth import NONE, TRUE_OF_FAILURE, confusion, true_of_row
 
 MISSIONS, SEEDS, FACTORS = ("landing", "takeoff"), (9001, 9002), (1.0, 2.0, 4.0, 8.0)
@@ -181,11 +181,7 @@ def _lines(records: list[Record], words: Any) -> list[str]:
 def main() -> None:
     """Fly what is missing and write the page."""
     path = Path(sys.argv[1] if len(sys.argv) > 1 else "faults_deviations.jsonl")
-    there = [json.loads(line) for line in path.read_text("utf-8").splitlines()] if path.is_file() else []
-    with path.open("a", encoding="utf-8") as file:
-        for r in flown({key(r) for r in there}):
-            there.append(r)
-            print(json.dumps(r), file=file, flush=True)
+    there = completed(path, lambda there: flown({key(r) for r in there}))
     PAGE.write_text(markdown(there), encoding="utf-8")
 
 

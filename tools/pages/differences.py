@@ -4,7 +4,6 @@
 first, half an hour of two cores, and added to it line by line, so that it can be stopped and goes on.
 """
 
-import json
 import multiprocessing
 import os
 import sys
@@ -17,6 +16,7 @@ from typing import Any
 from armland.experiments.episode import attempt
 from armland.models.parameters import uav_parameters
 from armland.scenario import load_scenario
+from pages.keeping import completed
 
 FIRST, COUNT = 97001, 100
 
@@ -146,11 +146,7 @@ def main() -> None:
     path = Path(sys.argv[1] if len(sys.argv) > 1 else "differences.jsonl")
     count = int(sys.argv[2]) if len(sys.argv) > 2 else COUNT
     pattern = sys.argv[3] if len(sys.argv) > 3 else "*"
-    there = [json.loads(line) for line in path.read_text("utf-8").splitlines()] if path.is_file() else []
-    with path.open("a", encoding="utf-8") as file:
-        for r in flown(missing(there, count, pattern)):
-            there.append(r)
-            print(json.dumps(r), file=file, flush=True)
+    there = completed(path, lambda there: flown(missing(there, count, pattern)))
     if pattern == "*" and count == COUNT:
         PAGE.write_text(markdown(there), encoding="utf-8")
     else:

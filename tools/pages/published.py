@@ -4,13 +4,13 @@
 and added to it line by line, so that it can be stopped and goes on.
 """
 
-import json
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 from pages.flights import Branches, branches, fly_trial, unsafe
+from pages.keeping import completed
 from pages.trials import Trial, all_trials
 from pages.truth import confusion, untrue
 
@@ -103,11 +103,7 @@ def _lines(records: list[Record], words: Any) -> list[str]:
 def main() -> None:
     """Fly what is missing and write the page."""
     path = Path(sys.argv[1] if len(sys.argv) > 1 else "faults_published.jsonl")
-    there = [json.loads(line) for line in path.read_text("utf-8").splitlines()] if path.is_file() else []
-    with path.open("a", encoding="utf-8") as file:
-        for r in flown({(r["name"], r["seed"]) for r in there}):
-            there.append(r)
-            print(json.dumps(r), file=file, flush=True)
+    there = completed(path, lambda there: flown({(r["name"], r["seed"]) for r in there}))
     PAGE.write_text(markdown(there), encoding="utf-8")
 
 

@@ -4,7 +4,6 @@
 can be stopped and goes on; SEEDS is a number, 50 if absent. What RECORDS has is not flown again.
 """
 
-import json
 import multiprocessing
 import os
 import sys
@@ -19,6 +18,7 @@ from armland.experiments.campaign import campaign, value
 from armland.experiments.episode import prepare
 from armland.models.parameters import uav_parameters
 from armland.scenario import Scenario
+from pages.keeping import completed
 
 ROOT = Path(__file__).parents[2]
 
@@ -185,11 +185,7 @@ def main() -> None:
     """Fly what is missing and write the table."""
     path = Path(sys.argv[1])
     seeds = range(FIRST, FIRST + int(sys.argv[2] if len(sys.argv) > 2 else SEEDS))
-    there = [json.loads(line) for line in path.read_text("utf-8").splitlines()] if path.is_file() else []
-    with path.open("a", encoding="utf-8") as file:
-        for r in flown(list(there), seeds):
-            there.append(r)
-            print(json.dumps(r), file=file, flush=True)
+    there = completed(path, lambda there: flown(there, seeds))
     page = PAGE.read_text("utf-8").partition(HEADING)[0]
     PAGE.write_text(f"{page}{HEADING}\n\n{markdown(there)}", encoding="utf-8")
 
