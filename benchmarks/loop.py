@@ -112,7 +112,8 @@ def made(c: Case, seed: int | None = None) -> Flight:
 
 
 def whole(flight: Flight, file: Path) -> float:
-    """Seconds a tick, with recorder and file."""
+    """Seconds a tick, with recorder and file: a new one, since some file systems flush what replaces an older one first."""
+    file.unlink(missing_ok=True)
     begun = time.perf_counter()
     with Recorder(file, flight.plan.joints, flight.period_ns, flight.metadata, keep_in_memory=True) as recorder:
         loops.fly(flight.simulator, flight.controller, flight.plan, recorder)

@@ -6,7 +6,7 @@ import pytest
 
 from armland.errors import ConfigurationError, ModelError
 from armland.models.arm import ArmModel
-from armland.models.description import ASSETS, frame_names, read_spec
+from armland.models.description import ASSETS, frame_names, read_spec, without_shapes
 from armland.scenario.arm import Tool
 
 LWR = (ASSETS / "lwr4.xml").read_text("utf-8")
@@ -167,3 +167,22 @@ def test_joint_that_cannot_be_driven_is_refused(load):
     assert ball != LWR
     with pytest.raises(ModelError, match="neither a hinge nor a slide"):
         load(ball, "flange", suffix=".xml")
+
+
+SHAPED = """<mujoco>
+  <asset><mesh name="m" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/></asset>
+  <worldbody><body name="a"><inertial pos="0 0 .1" mass="2" diaginertia=".1 .2 .25"/><joint name="j" axis="0 1 0"/>
+    <geom type="mesh" mesh="m"/>
+    <body name="b" pos="0 0 1"><joint name="k" axis="1 0 0"/>{shape}</body></body></worldbody></mujoco>"""
+STATED = '<inertial pos="0 0 .2" mass="1" diaginertia=".1 .1 .1"/><geom size=".1"/>'
+
+
+@pytest.mark.parametrize(("shape", "left"), [(STATED, 0), ('<geom size=".1" density="500"/>', 1)])
+def test_model_without_shapes_keeps_every_inertia(shape, left):
+    """A shape that gives its body the inertia stays; all others go, meshes with the last one."""
+    spec = mujoco.MjSpec.from_string(SHAPED.format(shape=shape))
+    whole, bare = spec.compile(), without_shapes(spec).compile()
+    assert (whole.ngeom, bare.ngeom, bare.nmesh) == (2, left, left)
+    for name in ("body_mass", "body_inertia", "body_ipos", "body_iquat"):
+        np.testing.assert_array_equal(getattr(bare, name), getattr(whole, name))
+    assert spec.compile().ngeom == 2

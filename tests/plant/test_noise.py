@@ -37,6 +37,14 @@ def test_wind_that_is_known_by_the_clock_is_not_drawn():
     np.testing.assert_array_equal(source.rows.wind, 3.0)
 
 
+def test_device_that_the_scene_lacks_costs_no_numbers_and_moves_no_other():
+    source = NoiseSource(7, 7, {"camera", "reference"})
+    source.draw()
+    for name in Noise._fields[:-2]:
+        drawn = 0.0 if name in {"camera", "reference"} else rows(7, name)
+        np.testing.assert_array_equal(getattr(source.rows, name), drawn)
+
+
 def test_width_of_one_device_moves_no_other():
     np.testing.assert_array_equal(rows(7, "wrench", joints=6), rows(7, "wrench", joints=7))
 

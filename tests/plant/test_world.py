@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from armland.plant.world import KEPT, TOLD, world_layout
+from armland.plant.world import KEPT, TOLD, absent, world_layout
 
 
 def test_layout_is_one_object_and_the_same_for_all_missions(bench, bench_in_air):
@@ -29,3 +29,10 @@ def test_gravity_stands_in_the_environment(bench_in_air):
     b = bench_in_air(environment={"gravity_mps2": [0.0, 0.0, -9.7]})
     np.testing.assert_array_equal(b.world["environment"]["gravity"][0], [0.0, 0.0, -9.7])
     assert not b.world["environment"]["base_v"].any()
+
+
+def test_streams_of_absent_devices_are_named(bench, bench_in_air):
+    """On the hinge there is no camera; on land the deck has no motion reference."""
+    assert absent(bench().world) == {"camera", "flip", "reference"}
+    assert absent(bench_in_air().world) == {"reference"}
+    assert absent(bench_in_air(sea={"state": "ss2"}).world) == set()

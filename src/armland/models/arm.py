@@ -24,7 +24,7 @@ from armland.models.chain import (
     refresh,
     state_layout,
 )
-from armland.models.description import EE_SITE, compile_spec, mark_end_effector
+from armland.models.description import EE_SITE, compile_spec, mark_end_effector, without_shapes
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario.arm import Tool
@@ -69,7 +69,7 @@ class ArmModel:
         Raises:
             ModelError: unphysical inertia, or not a serial arm.
         """
-        model = compile_spec(spec, what)
+        model = compile_spec(without_shapes(spec), what)
         _check_serial(model, what)
         _scale_inertia(model, inertia_scale)
         model.opt.gravity[:] = gravity

@@ -37,6 +37,7 @@ def state_layout(joints: int) -> np.dtype:
             ("jacobian", "f8", (6, joints)),
             ("mass_matrix", "f8", (joints, joints)),
             ("gravity", "f8", (joints,)),
+            ("cholesky", "f8", (joints, joints)),  # of M, lower
             ("lambda_ee", "f8", (6, 6)),
             ("position", "f8", (3,)),
             ("rotation", "f8", (3, 3)),
@@ -124,7 +125,7 @@ def refresh(views: Views, s: Record, velocity_terms: bool) -> None:
     mj_comPos(views.model, views.data)
     mj_makeM(views.model, views.data)
     _joints(views, views.constants[0], s)
-    operational_inertia(s.mass_matrix, s.jacobian, s.lambda_ee)
+    operational_inertia(s.mass_matrix, s.jacobian, s.cholesky, s.lambda_ee)
     if velocity_terms:
         bias(views)
         _velocity_terms(views.bias, views.qvel, views.constants[0], s)

@@ -118,6 +118,19 @@ def _draw(body: mujoco.MjsBody, length: float, radius: float, colour: list[float
     body.add_geom(fromto=[0, 0, 0, 0, 0, length], size=[radius, 0, 0], rgba=colour, **look)
 
 
+def without_shapes(spec: mujoco.MjSpec) -> mujoco.MjSpec:
+    """A copy without the shapes of bodies whose inertia is stated: what only computes dynamics need not place them in each tick."""
+    bare = spec.copy()
+    for body in bare.bodies:
+        if body.explicitinertial:
+            for geom in list(body.geoms):
+                bare.delete(geom)
+    if not bare.geoms:
+        for mesh in list(bare.meshes):
+            bare.delete(mesh)
+    return bare
+
+
 def compile_spec(spec: mujoco.MjSpec, what: str) -> mujoco.MjModel:
     """The model that a spec describes; `what` names it in messages.
 

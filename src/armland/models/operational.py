@@ -61,28 +61,28 @@ def _forward(L: Array, B: Array, X: Array) -> None:
 
 
 @njit(cache=True)
-def operational_inertia(M: Array, jacobian: Array, lambda_ee: Array) -> float:
+def operational_inertia(M: Array, jacobian: Array, L: Array, lambda_ee: Array) -> float:
     """Λ (4) of one configuration; returns the smallest pivot of 𝒥 M⁻¹ 𝒥ᵀ, 1/kg or 1/(kg·m²).
 
     Args:
         M: joint-space inertia (n, n), kg·m².
         jacobian: 𝒥 (6, n), m and 1.
+        L: lower Cholesky factor of M (n, n), zero above the diagonal, written.
         lambda_ee: Λ (6, 6), kg and kg·m², written.
 
     Source: (4); damping below `PIVOT_THRESHOLD` is ours.
     """
     n = M.shape[0]
-    L = np.zeros((n, n))
     cholesky(M, L)
-    X = np.zeros((n, 6))
+    X = np.empty((n, 6))
     _forward(L, jacobian.T, X)
-    A = np.zeros((6, 6))
+    A = np.empty((6, 6))
     for i in range(6):
-        for j in range(6):
+        for j in range(i + 1):
             s = 0.0
             for k in range(n):
                 s += X[k, i] * X[k, j]
-            A[i, j] = s
+            A[i, j] = A[j, i] = s
     L6 = np.zeros((6, 6))
     pivot = cholesky(A, L6)
     if pivot < PIVOT_THRESHOLD:
@@ -90,14 +90,14 @@ def operational_inertia(M: Array, jacobian: Array, lambda_ee: Array) -> float:
         for i in range(6):
             A[i, i] += PIVOT_THRESHOLD * lack * lack
         cholesky(A, L6)
-    inverse = np.zeros((6, 6))
+    inverse = np.empty((6, 6))
     _forward(L6, np.eye(6), inverse)
     for i in range(6):
-        for j in range(6):
+        for j in range(i + 1):
             s = 0.0
-            for k in range(6):
+            for k in range(i, 6):
                 s += inverse[k, i] * inverse[k, j]
-            lambda_ee[i, j] = s  # (4)
+            lambda_ee[i, j] = lambda_ee[j, i] = s  # (4)
     return pivot
 
 
@@ -141,19 +141,17 @@ def smallest_singular_value(jacobian: Array) -> float:
 
 
 @njit(cache=True)
-def null_space_torque(tau0: Array, M: Array, jacobian: Array, lambda_ee: Array) -> Array:
+def null_space_torque(tau0: Array, L: Array, jacobian: Array, lambda_ee: Array) -> Array:
     """τ_nsp = (I − 𝒥ᵀ 𝒥̄ᵀ) τ₀ (n,), N·m: the part of `tau0` (n,), N·m, that does not accelerate the end effector.
 
     Args:
         tau0: (n,), N·m.
-        M: joint-space inertia (n, n), kg·m².
+        L: lower Cholesky factor of the joint-space inertia (n, n).
         jacobian: 𝒥 (6, n), m and 1.
         lambda_ee: Λ (6, 6), kg and kg·m².
     """
-    n = M.shape[0]
-    L = np.zeros((n, n))
-    cholesky(M, L)
-    y = np.zeros(n)
+    n = L.shape[0]
+    y = np.empty(n)
     for i in range(n):
         s = tau0[i]
         for k in range(i):

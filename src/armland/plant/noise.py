@@ -2,6 +2,7 @@
 
 import math
 import zlib
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
@@ -62,23 +63,24 @@ class NoiseSource:
     Args:
         seed: of the run.
         joints: of the arm.
+        absent: streams of devices that the scene lacks: they stay at zero, and cost nothing.
     """
 
-    def __init__(self, seed: int, joints: int) -> None:
+    def __init__(self, seed: int, joints: int, absent: Collection[str] = ()) -> None:
         widths = (2 * joints, 6, 6, 3, CAMERA_WIDTH, 4, 3, joints, 3, 1, 5, 12, 3, 3, 18)
-        self._seed = seed
+        self._seed, self._names = seed, [name for name in Noise._fields[:-2] if name not in absent]
         self.rows = Noise(*(np.zeros((BLOCK, width)) for width in widths))
         self.generators: tuple[np.random.Generator, ...] = ()
         self.restart()
 
     def restart(self) -> None:
         """Put all streams to their begin; the block stays as it is until `draw`."""
-        self.generators = tuple(stream(self._seed, name) for name in Noise._fields[:-2])
+        self.generators = tuple(stream(self._seed, name) for name in self._names)
 
     def draw(self) -> None:
         """Replace the block, in place."""
-        for generator, rows in zip(self.generators, self.rows[:-2], strict=True):
-            generator.standard_normal(out=rows)
+        for name, generator in zip(self._names, self.generators, strict=True):
+            generator.standard_normal(out=getattr(self.rows, name))
 
 
 @njit(cache=True)

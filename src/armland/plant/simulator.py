@@ -26,7 +26,7 @@ from armland.plant.scene.composition import Scene, build_scene
 from armland.plant.sea.timed import on_deck, timed_deck, velocity_on_deck
 from armland.plant.wind.limits import lift_gain, steady_wind
 from armland.plant.wind.timed import timed_wind
-from armland.plant.world import build_world
+from armland.plant.world import absent, build_world
 from armland.records import MOST_ROTORS, Records, Tick, UavMode, layout
 from armland.rotations import Array, from_rotation_vector, matrix, multiply
 from armland.scenario import Scenario
@@ -69,7 +69,7 @@ class Simulator:
         if start != "hinged":
             self._deviate()
         self.views: Views = views_of(self.scene.model, self.data)
-        self.noise_source = NoiseSource(scenario.run.seed, self.scene.joints)
+        self.noise_source = NoiseSource(scenario.run.seed, self.scene.joints, absent(self.world))
         self.tick, self.timed_wind, self.timed_deck = 0, timed_wind(scenario), timed_deck(scenario)
         self._home = np.asarray(home, dtype=float)
         self._applied: Records = np.zeros(1, layout("command", self.scene.joints))

@@ -96,3 +96,9 @@ def build_world(scenario: Scenario, scene: Scene, start: Start, drawn: Draw, pha
     deck.tell(t["deck"], scene)
     reference.tell(t["reference"], scenario, scene, noisy)
     return world
+
+
+def absent(world: Records) -> set[str]:
+    """Streams of `plant.noise` of the devices that `world` lacks."""
+    lacks = set() if world["told"]["camera"]["fitted"].any() else {"camera", "flip"}
+    return lacks if world["told"]["reference"]["fitted"].any() else lacks | {"reference"}

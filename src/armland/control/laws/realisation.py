@@ -126,7 +126,7 @@ def arm_torque(
         for k in range(6):
             beyond = acceleration[k] - arm.acceleration_bias[k] if velocity_terms else acceleration[k]
             total[i] += arm.lambda_ee[i, k] * beyond
-    tau_nsp = null_space_torque(null_space_wish(q, qd, arm, p), arm.mass_matrix, arm.jacobian, arm.lambda_ee)
+    tau_nsp = null_space_torque(null_space_wish(q, qd, arm, p), arm.cholesky, arm.jacobian, arm.lambda_ee)
     for i in range(n):
         sum_ = arm.gravity[i] + tau_nsp[i]
         if velocity_terms:
