@@ -686,3 +686,15 @@ def test_deck_that_rises_is_no_uav_that_sinks(bench, heaves, found):
     bench.board["environment"]["base_quat"][0, 0] = 1.0
     bench.kept["act"]["thrust"], bench.e["plate_v"] = 1.2 * weight(bench), [0.0, 0.0, -0.6]
     assert find(bench, LONG, held=0, uav=AUTONOMOUS) == found
+
+
+@pytest.mark.parametrize(
+    ("above", "thrust", "images", "found"),
+    [(0.08, 2.0, 3, "slip"), (0.02, 2.0, 3, "none"), (0.08, 0.0, 3, "none"), (0.08, 2.0, 2, "none")],
+)
+def test_uav_that_is_thrown_off_its_cradle_has_left_the_magnet(bench, above, thrust, images, found):
+    """One whose plate has only slid aside still stands; one whose rotors stand still cannot fly."""
+    row, known = bench.enter(ALL), bench.kept["estimate"]
+    row["final"], bench.kept["act"]["thrust"] = 1, thrust
+    known["grip_far"], known["grip"][0, 2] = images, above
+    assert find(bench, LONG, matters=("slip",), arm=YIELD) == found

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from armland.mission.reference.guided import MOST_HOVER
-from armland.mission.reference.moves import BACK_OFF, MOVE
+from armland.mission.reference.moves import BACK_OFF, MOVE, YIELD
 from armland.mission.supervisor.reading import LEAPT_S, misreads
 from armland.mission.supervisor.rising import DRIFTS_S, needed
 from armland.mission.supervisor.table import FAULT, FAULTS
@@ -35,6 +35,9 @@ UAV_TILT, SLIP, NEAR_LIMIT, LAW_FAILED = FAULT["uav_tilt"], FAULT["slip"], FAULT
 
 SEEN_S = 0.15
 """Age, since the exposure, up to which an image says where the plate is on the magnet: its delay and two images lost."""
+
+THROWN_M = 0.05
+"""How far above the magnet the plate of a UAV is seen that no longer stands on its cradle: a skid that slips off a rail sinks."""
 
 LOAD_LEFT = 0.3
 """A load of which less than this share is felt is gone."""
@@ -139,6 +142,9 @@ def find_fault(expected: float, magnet_on: bool, phase: int, b: Record) -> int:
     runs_away = caught and act.hover > 0.95 * MOST_HOVER * b.kept.estimate.weight
     runs_away = runs_away and abs(act.short) > b.told.act.uav.shortfall
     _load_signs(expected, runs_away, row.force, m, e, b.told.decide.watch, b.kept.estimate, signs)
+    if row.final == 1 and row.arm == YIELD:
+        # A plate that slides aside leaves its UAV standing; one that is seen above the cradle has been thrown off it.
+        signs[SLIP] = act.thrust > 0.0 and b.kept.estimate.grip_far >= 3 and b.kept.estimate.grip[2] > THROWN_M
     _motion_signs(b.table.phases[phase], b, signs)
     misread = misreads(expected, b.table.phases[phase], b)
     signs[WRENCH_WRONG] = signs[WRENCH_WRONG] or misread

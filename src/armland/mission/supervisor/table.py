@@ -66,7 +66,8 @@ ESCALATION: dict[str, dict[str, str]] = {
         "near_limit": "braked_held",
     },
     "balancing": {"arm_stale": "braked_held", "encoder_frozen": "braked_held"},
-    "secured": {"arm_stale": "braked_down", "encoder_frozen": "braked_down"},
+    # A blow may throw a UAV off the cradle while its rotors still run.
+    "secured": {"arm_stale": "braked_down", "encoder_frozen": "braked_down", "slip": "let_fly"},
     "braked_held": {"slip": "braked_free"},
 }
 """Final phase × second fault -> graver final phase; whatever is not here changes nothing."""
