@@ -46,6 +46,9 @@ SWING = 0.75
 """The wrist's share of a balancing pivot's displacement. At this one the pivot may be fastest: 0.9 to 1.1 m/s across the corners
 of its reach, against 0.6 m/s of the wrist alone and 0.3 m/s of the arm without it."""
 
+APART_RAD = np.deg2rad(6.0)
+"""Of the hinge's range, kept for a UAV that is balanced and leans away from the tool. With 12 degrees the arm moves too far."""
+
 COMING_MPS2 = 3.0
 """Largest acceleration of the UAV that is carried on over the uplink's delay: what its largest tilt makes."""
 
@@ -196,6 +199,8 @@ def _refer(p: Records, t: Telling) -> None:
     b["push_max"], b["sway_max"] = limits.balance_push_mps2, limits.balance_reach_m
     # The last joint but one tilts the tool: where it sits is the wrist.
     b["swing"], b["wrist"] = SWING, np.linalg.norm(t.arm.position - t.arm.anchor[-2])
+    hinge = np.deg2rad(s.hinge.range_deg)
+    b["lean_most"] = max(hinge - APART_RAD, 0.5 * hinge)
     b["attitude_age"], b["lost"] = t.ticks(1e3 * BALANCE_AGE_S), limits.balance_reach_m * rate**2 / t.flyer.gravity
     b["down"], b["settle"] = place.put_down_m[2], SETTLE_M
 

@@ -7,9 +7,9 @@
 
 The pivot moves by (B.3) of `control.laws.balance`. The arm follows that trajectory as it follows any other reference, with
 acceleration and load fed forward, so friction in its joints does not disturb the balance. The tool leans in the direction of the
-displacement: φ = c x/L about the axis across x, with L from the wrist to the pivot and c = `swing` the wrist's share of the
-displacement. So the arm behind the wrist, which may stand between the cradle's rails, moves little, and the speed is divided among
-the joints.
+displacement: φ = φ_m tanh(c x/(L φ_m)) about the axis across x, with L from the wrist to the pivot and c = `swing` the wrist's share
+of small displacements. So the arm behind the wrist, which may stand between the cradle's rails, moves little, and the speed is divided
+among the joints. φ_m = `lean_most` leaves the hinge room for what the UAV leans the other way: at its stop nothing is balanced.
 """
 
 from functools import lru_cache
@@ -53,6 +53,7 @@ def told_layout() -> np.dtype:
             ("sway_max", "f8"),  # m
             ("swing", "f8"),  # share of the pivot's displacement that the wrist makes
             ("wrist", "f8"),  # m, from the wrist to the pivot
+            ("lean_most", "f8"),  # rad, of the tool
             ("attitude_age", "i8"),  # ticks, of an attitude that can be balanced by
             ("down", "f8"),  # m, height of the pivot when the UAV stands on the cradle
             ("lost", "f8"),  # rad, capture point beyond which it cannot be balanced
@@ -181,4 +182,7 @@ def _settle(elapsed: float, down: float, coast: float, kept: Record, r: Record) 
 def _lean(i: int, p: Record, s: Record) -> None:
     # Towards x the tool turns about +y, towards y about −x.
     axis, slope = (1, p.swing / p.wrist) if i == 0 else (0, -p.swing / p.wrist)
-    s.lean[axis], s.lean_v[axis], s.lean_a[axis] = slope * s.sway[i], slope * s.sway_v[i], slope * s.sway_a[i]
+    t = np.tanh(slope * s.sway[i] / p.lean_most)
+    steep = slope * (1.0 - t * t)
+    s.lean[axis], s.lean_v[axis] = p.lean_most * t, steep * s.sway_v[i]
+    s.lean_a[axis] = steep * (s.sway_a[i] - 2.0 * t * slope / p.lean_most * s.sway_v[i] ** 2)
