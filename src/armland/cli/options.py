@@ -214,10 +214,11 @@ def sea_settings(given: dict[str, Any]) -> dict[str, Any]:
     """
     out: dict[str, Any] = {}
     if (state := given.get("sea")) is not None:
-        known = {"0": "calm", **{str(i): f"ss{i}" for i in range(1, 5)}, "calm": "calm", "tank": "tank"}
+        numbered = {str(i): f"ss{i}" for i in range(1, 5)}
+        known = {"0": "calm", **numbered, **{name: name for name in ("calm", *numbered.values(), "tank")}}
         if state not in known:
             raise ConfigurationError(
-                f"--sea {state!r}: sea states are 0 (calm) to 4, or tank: a floating platform's own motion"
+                f"--sea {state!r}: sea states are 0 (calm) to 4 or ss1 to ss4, or tank: a floating platform's own motion"
             )
         out["state"] = known[state]
     if given.get("hull") is not None:
