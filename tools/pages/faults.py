@@ -9,6 +9,7 @@ from armland.mission.supervisor.table import DEBOUNCE_S, ESCALATION, FAULT_TABLE
 from armland.mission.table.phases import KINDS
 from armland.mission.told import LATE_S, LATER_S, MISSED_SHARE
 from armland.scenario.control import Thrust
+from armland.scenario.deviation import LEVELS
 from armland.scenario.faults import Fault
 from armland.scenario.mission import Limits
 from pages.flights import Flight
@@ -134,7 +135,10 @@ def signs() -> dict[str, str]:
         f"or the plate within {1e3 * sign.TOUCHES_M:g} mm after {1e3 * sign.FOLLOWED_M:g} mm, "
         "pulling with what the thrust exceeds the weight",
         "arm_blocked": f"end effector more than {1e3 * sign.BLOCKED_M:g} mm off its reference; or a nod of which the arm made less "
-        f"than {sign.NODDED[0]:g}, or more than {sign.NODDED[1]:g}, and the sensor felt the tool accordingly",
+        f"than {sign.NODDED[0]:g}, or more than {sign.NODDED[1]:g}, and the sensor felt the tool accordingly; or a torque on a joint "
+        "that neither its motor, nor "
+        f"the arm's model, nor the force sensor of an end effector that may touch explain, beyond {LEVELS['harsh']:g} times what the "
+        "published deviations make of it together ([momentum.md](laws/momentum.md))",
         "thrust_lost": f"sinking at more than {sign.SINKS_MPS:g} m/s with all the thrust, or at more than {sign.PLUNGES_MPS:g} m/s "
         f"with {sign.STRAINS:g} times the hover thrust; or a UAV that needs nearly all that its rotors give, by itself or as the "
         "arm feels it on the magnet, where the force falls as the thrust rises",

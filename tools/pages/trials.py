@@ -31,6 +31,9 @@ JERK: Failure = {"kind": "overload", "size": -125.0, "lasts_s": 0.02}
 SHOVE: Failure = {"kind": "push", "body": "uav", "size": 1.5, "direction": (0.0, 1.0, 0.0)}
 """The UAV is pushed aside."""
 
+LEAN: Failure = {"kind": "push", "body": "elbow", "size": 40.0, "direction": (0.0, 1.0, 0.0)}
+"""Somebody leans against the elbow: neither the force sensor nor the tool's place shows it."""
+
 WEDGE: Failure = {"kind": "push", "body": "elbow", "size": 200.0, "direction": (0.0, 0.0, 1.0)}
 """The elbow is held up, and stays so."""
 
@@ -49,7 +52,7 @@ PROVOKED: dict[str, Failure] = {
     "wrench_drift": {"kind": "wrench_drift", "size": 6.0},
     "magnet_coil": {"kind": "magnet_coil", "size": 0.5},
     "magnet_stuck": {"kind": "magnet_stuck", "size": 1.0},
-    "arm_blocked": WEDGE,
+    "arm_blocked": LEAN,
     "overload": KNOCK,
     "rotor_lost": {"kind": "rotor_loss", "size": 1.0},
     "thrust_lost": {"kind": "thrust_loss", "size": 0.3},
@@ -176,15 +179,9 @@ CELLS: dict[tuple[str, str, str], Cell] = {
     ("takeoff", "magnet_stuck", "ground"): Cell(end="holding"),
     ("takeoff", "magnet_stuck", "held"): Cell(end="holding"),
     ("takeoff", "magnet_stuck", "grip"): Cell(end="holding"),
-    # Near the rails and with the UAV on the arm the push drives the joints before the tool.
-    ("landing", "arm_blocked", "ground"): Cell(found="near_limit"),
-    ("landing", "arm_blocked", "touch"): Cell(end="braked_free", found="near_limit"),
-    ("landing", "arm_blocked", "held"): Cell(end="braked_held", found="near_limit"),
-    ("landing", "arm_blocked", "cradle"): Cell(end="braked_down", found="near_limit"),
-    ("takeoff", "arm_blocked", "ground"): Cell(found="near_limit"),
-    ("takeoff", "arm_blocked", "touch"): Cell(end="braked_free", found="arm_blocked"),
-    ("takeoff", "arm_blocked", "held"): Cell(end="braked_held", found="near_limit"),
-    ("takeoff", "arm_blocked", "grip"): Cell(end="braked_down", found="near_limit"),
+    # While it carries, the arm bears it as it bears the load; it is found once the arm has let go.
+    ("takeoff", "arm_blocked", "held"): Cell(end="braked_free", found="arm_blocked"),
+    ("takeoff", "arm_blocked", "grip"): Cell(end="braked_free", found="arm_blocked"),
     # On the rotors' way up it shows when the hinge does not come free of force.
     ("landing", "thrust_lost", "held"): COPES,
     ("takeoff", "thrust_lost", "ground"): Cell(end="holding"),
@@ -234,8 +231,6 @@ OTHERWISE: dict[tuple[str, str, str], str] = {
     ("landing", "magnet_stuck", "flight"): "it shows when the magnet is to let go, on the cradle",
     ("landing", "magnet_stuck", "touch"): "it shows when the magnet is to let go, on the cradle",
     ("takeoff", "magnet_stuck", "grip"): "it shows when the magnet is to let go, in the air",
-    ("landing", "arm_blocked", "ground"): "the joints are too fast before the tool is off its reference",
-    ("takeoff", "arm_blocked", "ground"): "the joints are too fast before the tool is off its reference",
     ("landing", "thrust_lost", "held"): "the arm carries it: its rotors give too little to fly, and need not",
     ("takeoff", "thrust_lost", "ground"): "it shows when the rotors are to carry the whole weight, in the air",
     ("takeoff", "thrust_lost", "grip"): "it shows when the rotors are to carry the whole weight, in the air",
@@ -326,6 +321,8 @@ EXTRAS: tuple[Trial, ...] = (
     _extra("landing reversed wrench in flight", "abort", "wrench_wrong", _f("align", "wrench_reversed")),
     _extra("landing wrench at half in flight", "abort", "wrench_wrong", _f("approach", "wrench_gain", size=0.5)),
     _extra("landing camera at three times its noise", "done", "none", _f("align", "camera_noise", size=3.0)),
+    _extra("landing wedged elbow", "braked_free", "arm_blocked", _f("guide", WEDGE)),
+    _extra("landing wedged elbow, held", "braked_held", "near_limit", _f("carry", WEDGE)),
     # What makes a healthy UAV lean.
     _extra("landing gust, held", "done", "none", _f("carry", "gust", **_GUST)),
     _extra("landing gust", "done", "none", _f("guide", "gust", **_GUST)),

@@ -18,7 +18,7 @@ from armland.records import Records, tick_layout
 def board_layout(joints: int) -> np.dtype:
     """The board for an arm with `joints` joints; its size and type are the same for every mission."""
     told = [
-        ("estimate", estimate.told_layout()),
+        ("estimate", estimate.told_layout(joints)),
         ("decide", decide.told_layout()),
         ("refer", refer.told_layout()),
         ("act", act.told_layout(joints)),

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from armland.control.laws.attitude import QuaternionPdGains, initial_memory, quaternion_pd
-from armland.estimation import contact, deck, disturbance, wrench
+from armland.estimation import contact, deck, disturbance, momentum, wrench
 from armland.estimation.plate import layouts
 from armland.linking import linked, named
 from armland.mission.load import estimate_load
@@ -37,8 +37,8 @@ SINGULARITY_PERIOD = 20
 
 
 @lru_cache
-def told_layout() -> np.dtype:
-    """What the estimate is told."""
+def told_layout(joints: int) -> np.dtype:
+    """What the estimate is told, for an arm with `joints` joints."""
     return np.dtype(
         [
             ("tick_s", "f8"),
@@ -74,6 +74,7 @@ def told_layout() -> np.dtype:
             ("contact", contact.told_layout()),
             ("observer", disturbance.told_layout()),
             ("deck", deck.told_layout()),
+            ("momentum", momentum.told_layout(joints)),
         ]
     )
 
@@ -120,6 +121,7 @@ def kept_layout(joints: int) -> np.dtype:
             ("load", contact.load_layout()),
             ("observer", disturbance.kept_layout()),
             ("deck", deck.kept_layout()),
+            ("momentum", momentum.kept_layout(joints)),
         ]
     )
 

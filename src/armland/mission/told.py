@@ -10,7 +10,7 @@ from armland.control.laws.realisation import told as realisation_told
 from armland.control.laws.rigid_body import ExactGains
 from armland.control.laws.settings import Row
 from armland.control.laws.settings import told as law_told
-from armland.estimation import contact, deck, disturbance, wrench
+from armland.estimation import contact, deck, disturbance, momentum, wrench
 from armland.estimation.plate import layouts
 from armland.estimation.plate.layouts import FELT_S
 from armland.mission.belief import Flyer
@@ -151,6 +151,7 @@ def _estimate(p: Records, t: Telling) -> None:
     gust = FELT * s.uav.drag_nspm / t.flyer.mass * expected(s).gust(STRONGEST)
     p["filter"] = layouts.told(s, t.flyer.mass, t.flyer.body.lever, gust)
     p["wrench"], p["contact"], p["deck"] = wrench.told(s), contact.told(s), deck.told(s)
+    p["momentum"] = momentum.told(s, t.arm, t.flyer.weight)
     bandwidth, most = s.estimation.load_observer_rad_s, s.estimation.load_observer_limit_n
     if hinged:
         bandwidth, most = (s.control.observer_rad_s if t.switches.observer else 0.0), s.control.observer_limit_n

@@ -126,7 +126,7 @@ BLIND = {
     "wrench_wrong": ("landing", "ground", ("wrench_wrong", "wrench_drift")),
     # In the air the UAV that hangs on it is taken for one that is too weak to rise; on the cradle the arm tears it off.
     "magnet_stuck": ("landing", "cradle", ("magnet_stuck",)),
-    "arm_blocked": ("landing", "flight", ("arm_blocked", "near_limit")),
+    "arm_blocked": ("landing", "flight", ("arm_blocked",)),
     # A flying UAV falls either way; one on the magnet need not be let go.
     "thrust_lost": ("takeoff", "held", ("thrust_lost",)),
     "thrust_short": ("takeoff", "flight", ("thrust_short",)),

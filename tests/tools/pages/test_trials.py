@@ -23,7 +23,7 @@ def test_every_cell_of_the_fault_table_has_a_trial(landing_scenario):
     )
     assert {k for _, _, k in there} == set(KINDS) - {"hinge"}
     names = {t.name for t in all_trials()}
-    assert len(names) == len(all_trials()) == 256
+    assert len(names) == len(all_trials()) == 258
     assert {f"{m} {f} {k}" for m, f, k in there - set(OPEN)} <= names
     assert set(CELLS) <= there
 

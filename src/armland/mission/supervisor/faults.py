@@ -15,6 +15,7 @@ from armland.mission.reference.moves import BACK_OFF, MOVE, YIELD
 from armland.mission.supervisor.reading import LEAPT_S, misreads
 from armland.mission.supervisor.rising import DRIFTS_S, needed
 from armland.mission.supervisor.table import FAULT, FAULTS
+from armland.mission.supervisor.touch import touched
 from armland.mission.table.arrays import FAULT_ROWS
 from armland.mission.table.phases import LINK, UAV
 from armland.models.environment import climb
@@ -148,6 +149,8 @@ def find_fault(expected: float, magnet_on: bool, phase: int, b: Record) -> int:
     _motion_signs(b.table.phases[phase], b, signs)
     misread = misreads(expected, b.table.phases[phase], b)
     signs[WRENCH_WRONG] = signs[WRENCH_WRONG] or misread
+    felt = touched(phase, b)
+    signs[ARM_BLOCKED] = signs[ARM_BLOCKED] or felt
     p, health = b.told.decide.watch, b.kept.limit
     near = health.joint_margin < p.joint_margin or b.kept.estimate.sigma < p.sigma_min
     signs[NEAR_LIMIT] = near or health.speed_ratio > p.speed_share

@@ -40,8 +40,8 @@ REMEDIES: dict[str, tuple[str, str]] = {
         "look at coil, residual force and faces",
     ),
     "arm_blocked": (
-        "the arm in free motion does not follow its reference: something is in its way, or a joint fails or sticks",
-        "look for what it touches, then release the brakes",
+        "something touches the arm in free motion or is in its way, or a joint fails or sticks",
+        "look for what it touches, and whether masses and torques are as stated, then release the brakes",
     ),
     "thrust_lost": (
         "the UAV sinks, or would, with all the thrust that its rotors give",

@@ -31,7 +31,7 @@ FAULT_TABLE: dict[str, dict[str, str]] = {
         "magnet_coil": "refused       -           abort       holding     -           secured     -",
         "thrust_short": "-            holding     holding     -           -           -           -",
         "magnet_stuck": "-            holding     holding     -           secured     secured     -",
-        "arm_blocked": "braked_refused braked_free -          -           -           -           -",
+        "arm_blocked": "braked_refused braked_free braked_free -           -           -           -",
         "overload": "  refused        abort       abort       holding     secured     secured     -",
         "rotor_lost": "-              -           balancing   balancing   -           -           -",
         "thrust_lost": "refused       abort       holding     holding     -           -           -",
