@@ -643,6 +643,20 @@ def test_weight_that_has_just_left_the_magnet_is_no_leap_of_the_sensor(bench, di
     assert answer == found
 
 
+@pytest.mark.parametrize(("stays", "found"), [(False, "none"), (True, "wrench_wrong")])
+def test_plate_that_bounces_off_the_arm_leaves_a_sensor_that_reads_right(bench, stays, found):
+    """A plate presses with half the tool's weight until it is seen to have left; what stays then is no plate's."""
+    for k in range(300):
+        bench.e["plate"] = bench.e["r"] + [0.0, 0.0, 0.002 if k < 200 else 0.2]
+        # An image that says so comes late: the plate has gone when it is seen to be near.
+        pressed = (-0.5 if stays else 0.0) if k >= 200 else 0.5
+        bench.e["hinge_force"] = [0.0, 0.0, pressed * tool(bench)]
+        answer = find(bench, 1, ["wrench_wrong"], held=0, arm=MOVE)
+        if answer != "none":
+            break
+    assert answer == found
+
+
 @pytest.mark.parametrize(
     ("reads", "arm", "found"),
     [
