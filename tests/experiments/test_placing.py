@@ -5,8 +5,9 @@ import pytest
 
 from armland.errors import ConfigurationError, WorkspaceError
 from armland.experiments.episode import fly_prepared, prepare
-from armland.experiments.placing import placed
+from armland.experiments.placing import mounted_further, placed
 from armland.mission.registry import MISSIONS
+from armland.models.description import resolve
 from armland.scenario import load_scenario
 
 LANDING = MISSIONS["landing"]
@@ -69,3 +70,49 @@ def test_places_at_which_the_plant_objects_are_passed_over(six_axis):
     one, line = placed(six_axis, LANDING, TOO_FAR, make)
     assert one.place.catch_m == tried[1] != tried[0]
     assert line.endswith("chosen, because too far")
+
+
+NOWHERE = WorkspaceError("no place was found")
+
+
+def made_at(asked, works):
+    """A maker that refuses all end effectors but one, and notes what it is asked for."""
+
+    def make(one):
+        asked.append(one.arm.ee)
+        if one.arm.ee != works:
+            raise WorkspaceError("nor there")
+        return one
+
+    return make
+
+
+@pytest.fixture
+def inside(six_axis, tmp_path):
+    """The arm with its `tool0` 27 mm inside of the frame that it is mounted on otherwise."""
+    text = (resolve(six_axis.arm.file)).read_text("utf-8")
+    joint = '<joint name="o" type="fixed"><parent link="link_6"/><child link="outer"/><origin xyz="0 0.09 0" rpy="-1.57 0 0"/></joint>'
+    last = f'<link name="outer"/>{joint}</robot>'
+    path = tmp_path / "inside.urdf"
+    path.write_text(text.replace('xyz="0 0.09 0"', 'xyz="0 0.063 0"').replace("</robot>", last), encoding="utf-8")
+    return six_axis.replaced({"arm": {"file": str(path)}})
+
+
+def test_tool_that_nobody_placed_is_mounted_further_out_where_there_is_no_place_else(inside):
+    asked = []
+    made, said = mounted_further(inside, NOWHERE, made_at(asked, "outer"))
+    assert (made.arm.ee, asked) == ("outer", ["outer"])
+    assert said == "arm.ee = 'outer' chosen, 27 mm further out than 'tool0', because no place was found"
+
+
+@pytest.mark.parametrize(("ee", "works", "asked"), [("tool0", "outer", []), (None, "tool0", ["outer"])])
+def test_frame_that_a_user_chose_stays_and_one_that_does_not_help_is_not_told(inside, ee, works, asked):
+    tried = []
+    with pytest.raises(WorkspaceError, match="no place was found"):
+        mounted_further(inside.replaced({"arm": {"ee": ee}}), NOWHERE, made_at(tried, works))
+    assert tried == asked
+
+
+def test_arm_whose_frame_is_the_outermost_is_refused_as_it_was(six_axis):
+    with pytest.raises(WorkspaceError, match="no place was found"):
+        mounted_further(six_axis, NOWHERE, made_at([], "tool0"))

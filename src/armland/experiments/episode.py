@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from armland.errors import MountingError, WorkspaceError
 from armland.experiments.judge.brief import Brief, brief_of, metadata_of
 from armland.experiments.judge.judgement import Judgement, check_kind, judge
-from armland.experiments.placing import placed
+from armland.experiments.placing import mounted_further, placed
 from armland.mission.controller import Controller
 from armland.mission.plan import Plan, plan
 from armland.mission.registry import mission_named
@@ -108,7 +109,12 @@ def prepare(
         value = mission_named(mission)
         if value.start == "hinged":
             raise
-        flight, moved = placed(scenario, value, refusal, make)
+        try:
+            flight, moved = placed(scenario, value, refusal, make)
+        except WorkspaceError as nowhere:
+            again = partial(prepare, mission=mission, law=law, experiment=experiment, trial=trial)
+            flight, moved = mounted_further(scenario, nowhere, again)
+            moved = f"{moved}. {flight.moved}" if flight.moved else moved
         return flight._replace(moved=moved)
 
 

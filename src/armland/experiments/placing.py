@@ -9,10 +9,36 @@ from typing import TypeVar
 from armland.errors import ConfigurationError, WorkspaceError
 from armland.mission.feasibility.placing import BEST, MOST, alternatives, kept, refused, told_places
 from armland.mission.table.mission import Mission
+from armland.models.arm_file.reading import read_tree
+from armland.models.arm_file.tip import further_out
 from armland.models.description import ASSETS, resolve
+from armland.models.parameters import arm_file
 from armland.scenario import Scenario
 
 Made = TypeVar("Made")
+
+
+def mounted_further(scenario: Scenario, nowhere: WorkspaceError, make: Callable[[Scenario], Made]) -> tuple[Made, str]:
+    """What `make` makes of the scenario with the tool at the next frame further out, and a line that says which and why.
+
+    Args:
+        scenario: for whose arm no place was found.
+        nowhere: that refusal.
+        make: prepares a flight, or refuses it.
+
+    Raises:
+        WorkspaceError: `nowhere`, where the user chose the frame, none is further out, or that one does not help either.
+    """
+    end = arm_file(scenario).chain.tip
+    found = further_out(read_tree(resolve(scenario.arm.file)), end) if scenario.arm.ee is None else None
+    if found is None:
+        raise nowhere
+    name, gain = found
+    try:
+        made = make(scenario.replaced({"arm": {"ee": name}}))
+    except ConfigurationError as e:
+        raise nowhere from e
+    return made, f"arm.ee = {name!r} chosen, {1e3 * gain:.0f} mm further out than {end.label!r}, because {nowhere}"
 
 
 def placed(

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from armland.errors import ModelError
-from armland.models.arm_file.reading import read_arm
+from armland.models.arm_file.reading import read_arm, read_tree
 from armland.models.arm_file.table import Asked
+from armland.models.arm_file.tip import further_out, tip
 from armland.rotations import matrix
 
 
@@ -50,6 +51,34 @@ def test_turned_and_sideways_cancel(arm):
     """x of the flange is z of the tool's frame: the same direction in the last link."""
     R = [matrix(arm("t6_flange_x.urdf", ee=e).chain.ee.quat)[:, 2] for e in ("flange:x", "tool0")]
     np.testing.assert_allclose(*R, atol=1e-6)
+
+
+FLANGE = '<child link="tool0"/><origin xyz="0 0 0.07"/></joint>'
+
+
+def beyond(changed, own, further, ee=None):
+    """What lies further out than `tool0`, or than `ee`, of an arm with a frame more."""
+    more = f'<link name="more"/><joint name="m" type="fixed"><parent link="l7"/><child link="more"/><origin {further}/></joint>'
+    path = changed("t6_flange_x.urdf", (FLANGE, f'<child link="tool0"/><origin {own}/></joint>{more}'))
+    tree = read_tree(path)
+    return further_out(tree, tip(tree, ee))
+
+
+def test_next_frame_along_the_tools_axis_is_told_with_its_distance(changed):
+    name, gain = beyond(changed, 'xyz="0 0 0.03"', 'xyz="0.01 0 0.055"')
+    assert name == "more"
+    assert gain == pytest.approx(0.025)
+    # Turned, too, by the axis that points out; nothing less than 5 mm counts, and nothing further in.
+    assert beyond(changed, 'xyz="0 0 0.03"', 'xyz="0 0 0.055" rpy="0 -1.5707963 0"')[0] == "more:x"
+    assert beyond(changed, 'xyz="0 0 0.08"', 'xyz="0 0 0.082"') is None
+    assert beyond(changed, 'xyz="0 0 0.08"', 'xyz="0 0 0.02"') is None
+
+
+def test_out_is_where_the_tool_goes_even_back_into_the_arm(changed):
+    """A user whose tool points into the arm is told of frames that way."""
+    name, gain = beyond(changed, 'xyz="0 0 0.08"', 'xyz="0 0 0.1"', ee="tool0:-z")
+    assert name != "more"
+    assert gain > 0.0
 
 
 @pytest.mark.parametrize(

@@ -107,6 +107,38 @@ def others(tree: Tree, end: Tip) -> Iterator[str]:
             yield frame.name if axis == "z" else f"{frame.name}:{axis}"
 
 
+def further_out(tree: Tree, end: Tip, least: float = 5e-3) -> tuple[str, float] | None:
+    """The next frame along the tool's axis that the same joints move as `end`, as it is asked for, and by how much, m.
+
+    A frame that is called as tools are mounted may lie inside the wrist, as where a gripper of its own would overlap it.
+
+    Args:
+        tree: of the file.
+        end: end effector of it.
+        least: by how much it must be further out, m.
+    """
+    heights = {"": _out(tree, end.body, end.pose)}
+    axes = {frame.name: frame for frame in tree.frames}
+    for other in others(tree, end):
+        frame = axes.get(other) or axes[other.rpartition(":")[0]]
+        heights[other] = _out(tree, frame.body, frame.pose)
+    sign = 1.0 if _leads(tree, end) > 0.0 else -1.0
+    beyond = [(sign * (h - heights[""]), name) for name, h in heights.items()]
+    found = sorted((gain, name) for gain, name in beyond if gain >= least)
+    return (found[0][1], found[0][0]) if found else None
+
+
+def _out(tree: Tree, body: int, pose: Pose) -> float:
+    # How far along the last joint's axis a frame lies, from the joint's anchor, m.
+    last = last_joint(tree, body)
+    return 0.0 if last is None else float((pose.pos - last[1]) @ last[0])
+
+
+def _leads(tree: Tree, end: Tip) -> float:
+    last = last_joint(tree, end.body)
+    return 0.0 if last is None else float(matrix(end.pose.quat)[:, 2] @ last[0])
+
+
 def _plain(tree: Tree) -> Frame:
     behind = [f for f in tree.frames if hinges(tree, f.body) >= NEEDED]
     if not behind:

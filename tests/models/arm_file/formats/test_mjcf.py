@@ -59,6 +59,35 @@ def test_mass_may_come_from_shapes(changed):
     assert [s.kind for s in link.shapes] == ["cylinder"]
 
 
+@pytest.mark.parametrize(
+    ("mesh", "ring", "mass"),
+    [
+        # A ring that weighs nothing is no other source of the body's mass.
+        ('mass="0.6"', 'mass="0"', 0.6),
+        ("", 'density="0"', 1000.0 * 0.1**3 / 6.0),
+        # A mass that is said counts beside what a shape weighs; one that is not may be that shape, drawn.
+        ('mass="0.6"', 'mass="0.2"', 0.8),
+        ("", 'mass="0.2"', 0.2),
+    ],
+)
+def test_mass_comes_from_a_mesh_where_no_shape_has_it_or_the_mesh_says_it(changed, mesh, ring, mass):
+    """A corner of a cube of 0.1 m weighs a sixth of it."""
+    inertial = '<inertial pos="0 0 0.04" mass="1.6" diaginertia="0.00552 0.00552 0.00331"/>'
+    path = changed(
+        "ok.xml",
+        (
+            inertial,
+            f'<geom type="mesh" mesh="six" {mesh}/><geom type="cylinder" size="0.03 0.01" {ring}/>',
+        ),
+        (
+            "<worldbody>",
+            '<asset><mesh name="six" vertex="0 0 0 0.1 0 0 0 0.1 0 0 0 0.1"/></asset><worldbody>',
+        ),
+    )
+    link = next(k for k in read_arm(path).chain.links if k.name == "l6")
+    assert link.inertial.mass == pytest.approx(mass)
+
+
 def test_body_without_anything_is_refused(changed):
     inertial = '<inertial pos="0 0 0.04" mass="1.6" diaginertia="0.00552 0.00552 0.00331"/>'
     with pytest.raises(ModelError, match=r"link 'l6', which joint 'j6' moves, has no mass"):

@@ -147,13 +147,17 @@ def _drop_meshes(spec: mujoco.MjSpec, path: Path) -> dict[str, str]:
     complaints, needed = {}, set()
     for body in spec.bodies:
         shapes = [g for g in body.geoms if g.type in MESHES or g.meshname]
-        solid = [g for g in shapes if g.meshname and g.mass != 0.0 and g.density != 0.0]
-        wanted = not body.explicitinertial and body.name != "world" and solid and len(solid) == len(body.geoms)
+        weighs = [g for g in body.geoms if g.mass != 0.0 and g.density != 0.0]
+        solid, other = [g for g in weighs if g.meshname], any(not g.meshname for g in weighs)
+        if other:
+            # What is drawn beside a shape may be that shape again; a mass that is said is one.
+            solid = [g for g in solid if np.isfinite(g.mass)]
+        wanted = not body.explicitinertial and body.name != "world" and solid
         files = {g.meshname: _mesh_file(spec, g.meshname, path) for g in solid}
         if wanted and all(f is not None for f in files.values()):
             needed |= set(files)
             shapes = [g for g in shapes if g.meshname not in files]
-        elif wanted:
+        elif wanted and not other:
             missing = next(n for n, f in files.items() if f is None)
             complaints[body.name] = (
                 f"body {body.name!r} has no <inertial>, and the mesh {missing!r} from which its mass would come is not there; "
