@@ -75,7 +75,7 @@ $(STAMP): requirements.lock pyproject.toml $(if $(INTACT),,FORCE)
 				"On Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; }; \
 		echo 'Creating .venv'; "$(PYTHON)" -m venv --clear .venv; }
 	@rm -f $@ && : > .venv/.incomplete
-	@echo 'Installing what requirements.lock pins into .venv (the first time takes about a minute)'
+	@echo 'Installing what requirements.lock pins into .venv (2.5 GB; the first time takes some minutes)'
 	@$(PIP) install --require-hashes --only-binary :all: -r requirements.lock
 	@$(PIP) install --no-deps --no-build-isolation --editable .
 	@rm .venv/.incomplete && : > $@

@@ -220,7 +220,7 @@ SHARED = ("records.py", "scenario/", "scenarios/", "mission/missions/")
 """What every page may speak of; a law's page otherwise of what stands in the files that it links to."""
 PATH = re.compile(r"[\w.-]+(/[\w.-]+)*(/|\.(py|toml|md|xml|urdf|cff|lock))")
 NAME = re.compile(r"\.?([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*)(?:\(.*\)| = .*)?")
-FOREIGN = {"pandas", "episode", "comparison", "venv", "Makefile", "PIP_INDEX_URL"}
+FOREIGN = {"pandas", "episode", "comparison", "venv", "Makefile", "PIP_INDEX_URL", "MUJOCO_GL"}
 """Of another package or tool, a variable of a snippet, a file that a command writes."""
 
 

@@ -1,6 +1,7 @@
 """What MkDocs is told beyond `mkdocs.yml`: formulas, pages of sources that are linked to, drawings in the theme's colours."""
 
 from pathlib import Path
+from posixpath import dirname, relpath
 from typing import Any
 
 import drawings
@@ -37,3 +38,19 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, **_: Any) 
 def on_page_content(html: str, config: MkDocsConfig, page: Page, **_: Any) -> str:
     """Take drawings into the page, and set the indices of symbols below the line."""
     return formulas.indexed(drawings.inlined(html, page.file, config))
+
+
+def on_post_page(output: str, page: Page, **_: Any) -> str:
+    """Finish a page."""
+    return finished(output, relpath("page.js", dirname(page.url) or "."))
+
+
+def on_post_template(output_content: str, **_: Any) -> str:
+    """Finish what is no page, as the one that says that there is none."""
+    return finished(output_content, "page.js")
+
+
+def finished(html: str, script: str) -> str:
+    """The script of the search comes from the site itself; the search has a name for those who hear the page."""
+    here = html.replace("https://unpkg.com/iframe-worker/shim", script)
+    return here.replace('data-md-component="search" role="dialog"', 'data-md-component="search" role="dialog" aria-label="Search"')

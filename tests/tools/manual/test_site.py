@@ -1,6 +1,7 @@
 """The site as a whole: built without a warning, and nothing on it asks for the internet."""
 
 import re
+import shutil
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -90,3 +91,43 @@ def test_link_that_leads_nowhere_stops_the_build(tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(manual, "ROOT", tmp_path)
     with pytest.raises(Abort):
         manual.build(tmp_path / "site")
+
+
+CHROMIUM = shutil.which("chromium")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    if CHROMIUM is None:
+        pytest.skip("no chromium: apt-get install chromium")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+        yield browser
+        browser.close()
+
+
+@pytest.mark.slow
+def test_search_works_from_disk_without_internet(site, browser) -> None:
+    page = browser.new_context(offline=True).new_page()
+    page.goto((site / "laws" / "exact.html").as_uri())
+    page.keyboard.press("f")
+    page.keyboard.type("camera_stale")
+    found = page.wait_for_selector(".md-search-result__link >> text=Troubleshooting", timeout=20_000)
+    assert found is not None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name", ["index", "start", "troubleshooting", "laws/exact", "architecture", "api/flight", "faults"]
+)
+@pytest.mark.parametrize("width", [400, 1400])
+def test_page_is_no_wider_than_its_window_and_asks_for_nothing(site, browser, name: str, width: int) -> None:
+    page = browser.new_context(offline=True, viewport={"width": width, "height": 900}).new_page()
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto((site / f"{name}.html").as_uri())
+    page.wait_for_load_state("networkidle")
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert [url for url in asked if not url.startswith(("file:", "data:", "about:", "blob:"))] == []
