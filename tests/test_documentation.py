@@ -141,11 +141,16 @@ def test_targets_of_make_are_there(page: Path) -> None:
 
 
 @pytest.mark.parametrize("page", of_pages("toml"))
-def test_scenarios_of_pages_are_read(page: Path, tmp_path) -> None:
+def test_files_of_pages_are_read(page: Path, workplace, armland) -> None:
+    # A stand-in for the file of another package that the UAV's page completes; it, too, is driven as a whole.
+    (workplace / "cf2.xml").symlink_to(ROOT / "tests" / "data" / "uavs" / "whole.xml")
     for language, text in blocks(page):
-        if language == "toml" and "base =" in text:
-            (tmp_path / "own.toml").write_text(text, encoding="utf-8")
-            assert load_scenario(tmp_path / "own.toml").title
+        if language == "toml":
+            (workplace / "own.toml").write_text(text, encoding="utf-8")
+            if "base =" in text:
+                assert load_scenario(workplace / "own.toml").title
+            else:
+                assert armland("uav", "own.toml").code == 0
 
 
 def spans(text: str) -> list[str]:

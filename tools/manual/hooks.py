@@ -53,4 +53,6 @@ def on_post_template(output_content: str, **_: Any) -> str:
 def finished(html: str, script: str) -> str:
     """The script of the search comes from the site itself; the search has a name for those who hear the page."""
     here = html.replace("https://unpkg.com/iframe-worker/shim", script)
-    return here.replace('data-md-component="search" role="dialog"', 'data-md-component="search" role="dialog" aria-label="Search"')
+    return here.replace(
+        'data-md-component="search" role="dialog"', 'data-md-component="search" role="dialog" aria-label="Search"'
+    )
