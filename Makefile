@@ -14,7 +14,7 @@ PYTEST := .venv/bin/python -m pytest -n $(JOBS) --dist loadfile --durations 25 -
 INTACT := $(shell [ -x .venv/bin/python ] && [ ! -e .venv/.incomplete ] \
 	&& grep -qsF "$$(pwd -P)/.venv/" .venv/bin/pip && echo yes)
 
-.PHONY: help run test check slow bench mutants pages lock clean FORCE
+.PHONY: help run test check slow bench mutants pages site lock clean FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -49,6 +49,9 @@ mutants: $(STAMP) ## change what computes, one thing at a time, and list what no
 pages: $(STAMP) ## write the generated pages of docs/ anew; their trials fly for minutes
 	PYTHONPATH=tools .venv/bin/python -m pages
 
+site: $(STAMP) ## build the documentation site into build/site; ARGS="--open" shows it in a browser
+	@PYTHONPATH=tools .venv/bin/python -m manual $(ARGS)
+
 lock: ## pin the dependencies anew in requirements.lock; ARGS=--upgrade takes the newest
 	@.venv/tools/bin/python -m pip --version >/dev/null 2>&1 || "$(PYTHON)" -m venv --clear .venv/tools
 	@.venv/tools/bin/python -m pip --disable-pip-version-check --quiet install 'uv==$(UV_VERSION)'
@@ -72,7 +75,7 @@ $(STAMP): requirements.lock pyproject.toml $(if $(INTACT),,FORCE)
 				"On Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; }; \
 		echo 'Creating .venv'; "$(PYTHON)" -m venv --clear .venv; }
 	@rm -f $@ && : > .venv/.incomplete
-	@echo 'Installing what requirements.lock pins into .venv (the first time takes about a minute)'
+	@echo 'Installing what requirements.lock pins into .venv (2.5 GB; the first time takes some minutes)'
 	@$(PIP) install --require-hashes --only-binary :all: -r requirements.lock
 	@$(PIP) install --no-deps --no-build-isolation --editable .
 	@rm .venv/.incomplete && : > $@

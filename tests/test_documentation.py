@@ -4,6 +4,7 @@ import pkgutil
 import re
 import shlex
 from functools import reduce
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -24,29 +25,132 @@ PACKAGE = ROOT / "src" / "armland"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
-def blocks(language: str) -> list[tuple[str, str]]:
-    """Page and number, and text of each block."""
-    return [
-        (f"{page.name}-{i}", text)
-        for page in PAGES
-        for i, text in enumerate(re.findall(rf"```{language}\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL))
-    ]
+BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
+SHOWN = ("README.md", "examples", "tests")
+"""What of the repository commands and snippets name."""
 
 
-@pytest.mark.parametrize("code", [pytest.param(text, id=name) for name, text in blocks("python")])
-def test_snippet_runs(code: str, monkeypatch) -> None:
-    monkeypatch.chdir(ROOT)
-    # A snippet may add a mission of its own, which the other tests are not to see.
+def blocks(page: Path) -> list[tuple[str, str]]:
+    """Language and text of each block of a page, in their order."""
+    return BLOCK.findall(page.read_text("utf-8"))
+
+
+def of_pages(language: str) -> list:
+    """Each page that has blocks of a language, as a test's parameter."""
+    return [pytest.param(p, id=p.relative_to(ROOT).as_posix()) for p in PAGES if language in dict(blocks(p))]
+
+
+@pytest.fixture
+def workplace(tmp_path, monkeypatch) -> Path:
+    """A folder in which a reader of the documents could be; what snippets add to armland is gone afterwards."""
+    for name in SHOWN:
+        (tmp_path / name).symlink_to(ROOT / name)
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(registry, "MISSIONS", dict(registry.MISSIONS))
     monkeypatch.setattr(judgement, "KINDS", dict(judgement.KINDS))
+    return tmp_path
+
+
+def run_snippet(code: str) -> None:
     namespace: dict[str, object] = {}
     exec(code, namespace)
     assert len(namespace) > 1
 
 
-@pytest.mark.parametrize("page", ["README.md", "python.md", "own_law.md", "own_mission.md"])
+@pytest.mark.parametrize("page", of_pages("python"))
+def test_snippets_run(page: Path, workplace) -> None:
+    for language, code in blocks(page):
+        # What reads a command's results is run behind that command, by the slow test below.
+        if language == "python" and "out/" not in code:
+            run_snippet(code)
+
+
+@pytest.mark.parametrize("page", ["README.md", "python.md", "own_law.md", "own_mission.md", "logs.md", "start.md"])
 def test_page_has_a_snippet(page: str) -> None:
-    assert any(name.startswith(page) for name, _ in blocks("python"))
+    assert page in {parameter.values[0].name for parameter in of_pages("python")}
+
+
+def command_lines(shell: str) -> list[str]:
+    """Commands of armland in a block for a shell; `make run` is one."""
+    lines = [call.strip() for line in shell.splitlines() for call in line.partition("  #")[0].split(";")]
+    return [line.replace("make run", "armland land") for line in lines if line.startswith(("armland ", "make run"))]
+
+
+def briefly(call: str) -> list[str]:
+    """Its arguments, with two flights where it asks for a campaign: that they are many is tested elsewhere."""
+    return shlex.split(re.sub(r"(--seeds|--spread) \d+", r"\1 2", call))[1:]
+
+
+def says(text: str, output: str) -> bool:
+    """Whether the output holds what the page shows of it, however it is wrapped; `...` stands for what is left out."""
+    shown = r"\s+".join(map(re.escape, text.split())).replace(re.escape("..."), ".*?")
+    return re.search(shown, output, re.DOTALL) is not None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", of_pages("sh"))
+def test_page_does_what_it_says(page: Path, workplace, armland) -> None:
+    output = ""
+    for (language, text), (following, _) in pairwise([*blocks(page), ("", "")]):
+        if language == "python":
+            run_snippet(text)
+        if language == "sh":
+            output = ""
+            for call in command_lines(text):
+                done = armland(*briefly(call))
+                assert done.code in (0, 1) or (following == "text" and done.code == 2), f"{call}\n{done.err}"
+                # Progress and notes come before the verdict.
+                output += done.err + done.out
+        if language == "text" and output:
+            assert says(text, output), output
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("ended in abort after miss", True),
+        ("ended in ... after miss: camera_stale", True),
+        ("it is [3, 4] m", True),
+        ("ended in refused", False),
+        ("camera_stale ... ended", False),
+    ],
+)
+def test_what_a_page_shows_of_an_output_is_looked_for(text: str, found: bool) -> None:
+    assert says(text, "failure: ended in abort\n   after miss: camera_stale, it is [3, 4] m") == found
+
+
+def test_campaigns_of_pages_are_flown_briefly() -> None:
+    assert command_lines("make run  # so\narmland land --seeds 200; armland log x\nsource y") == [
+        "armland land",
+        "armland land --seeds 200",
+        "armland log x",
+    ]
+    assert briefly("armland land --seed 90001 --seeds 1000 --set 'a=[1, 2]'") == [
+        *("land", "--seed", "90001", "--seeds", "2", "--set", "a=[1, 2]"),
+    ]
+
+
+TARGETS = re.findall(r"^(\w+):.*## ", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_targets_of_make_are_there(page: Path) -> None:
+    shells = "\n".join(text for language, text in blocks(page) if language == "sh")
+    lines = [*spans(page.read_text("utf-8")), *shells.splitlines()]
+    assert {line.split()[1] for line in lines if line.startswith("make ")} <= {*TARGETS, "TARGET"}
+
+
+@pytest.mark.parametrize("page", of_pages("toml"))
+def test_files_of_pages_are_read(page: Path, workplace, armland) -> None:
+    # A stand-in for the file of another package that the UAV's page completes; it, too, is driven as a whole.
+    (workplace / "cf2.xml").symlink_to(ROOT / "tests" / "data" / "uavs" / "whole.xml")
+    for language, text in blocks(page):
+        if language == "toml":
+            (workplace / "own.toml").write_text(text, encoding="utf-8")
+            if "base =" in text:
+                assert load_scenario(workplace / "own.toml").title
+            else:
+                assert armland("uav", "own.toml").code == 0
 
 
 def spans(text: str) -> list[str]:
@@ -56,8 +160,10 @@ def spans(text: str) -> list[str]:
 
 def calls(text: str) -> list[str]:
     """Every command line of `armland` in a page: in blocks, indented, between backticks."""
+    # What a page lets be refused, it shows with the refusal behind it.
+    plain = re.sub(r"```sh\n[^`]*```\n+```text", "", text)
     shown = [
-        *re.findall(r"```sh\n(.*?)```", text, re.DOTALL),
+        *re.findall(r"```sh\n(.*?)```", plain, re.DOTALL),
         *re.findall(r"^    .*$", text, re.MULTILINE),
         *spans(text),
     ]
@@ -70,6 +176,8 @@ def calls(text: str) -> list[str]:
 def refusal(call: str) -> str | None:
     """Why the command line is none that `armland` takes; None if it is."""
     words = shlex.split(re.sub(r"\[(-[^]]*|[A-Z]+)]", r"\1", call))[1:]
+    if words[0] in {name for p in get_command(app).params for name in p.opts} | {"--help"}:
+        return None
     command = get_command(app).commands.get(words[0])  # type: ignore[attr-defined]
     if command is None:
         return f"no command {words[0]}"
@@ -117,8 +225,8 @@ SHARED = ("records.py", "scenario/", "scenarios/", "mission/missions/")
 """What every page may speak of; a law's page otherwise of what stands in the files that it links to."""
 PATH = re.compile(r"[\w.-]+(/[\w.-]+)*(/|\.(py|toml|md|xml|urdf|cff|lock))")
 NAME = re.compile(r"\.?([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*)(?:\(.*\)| = .*)?")
-FOREIGN = {"pandas", "episode", "comparison"}
-"""Of another package, a variable of a snippet, a file that a command writes."""
+FOREIGN = {"pandas", "episode", "comparison", "venv", "Makefile", "PIP_INDEX_URL", "MUJOCO_GL"}
+"""Of another package or tool, a variable of a snippet, a file that a command writes."""
 
 
 def code_of(page: Path, text: str) -> str:
@@ -153,9 +261,13 @@ def stale(page: Path, text: str) -> list[str]:
     for span in dict.fromkeys(spans(text)):
         path, name = PATH.fullmatch(span), NAME.fullmatch(re.sub(r"^python -m (\S+).*", r"\1", span))
         if path and "NAME" not in span:
-            known = any((place / span).exists() for place in (ROOT, PACKAGE, PACKAGE / "scenarios"))
+            known = any(
+                (place / span).exists() for place in (ROOT, *(PACKAGE / f for f in ("", "scenarios", "assets")))
+            )
         elif name and not path and name[1].split(".")[0] not in FOREIGN:
-            written = re.search(rf"\b{re.escape(name[1])}\b", code)
+            # A unit, such as `_nm`, ends a name.
+            start = "" if span.startswith("_") else r"\b"
+            written = re.search(rf"{start}{re.escape(name[1])}\b", code)
             known = written is not None or ("." in name[1] and is_there(name[1], scenario))
         else:
             known = True
