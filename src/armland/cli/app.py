@@ -12,6 +12,7 @@ from armland.cli.commands.logs import log, report
 from armland.cli.commands.margins import margins
 from armland.cli.commands.paper import paper
 from armland.cli.commands.reach import reach
+from armland.cli.commands.render import render
 from armland.cli.commands.run import land, run, takeoff
 from armland.cli.commands.studies import envelope, takeoff_weight, verify
 from armland.cli.commands.uav import uav
@@ -47,6 +48,7 @@ for command in (
     run,
     paper,
     report,
+    render,
     log,
     arm,
     uav,
