@@ -40,7 +40,7 @@ def test_landing_leaves_result_log_and_figures(armland, tmp_path):
     result = json.loads(done.out)
     assert result == json.loads((tmp_path / "out" / "result.json").read_text())
     assert (result["success"], result["seed"]) == (True, 3)
-    names = ["landing.mcap", "landing_overview.pdf", "landing_overview.png", "result.json"]
+    names = ["landing.mcap", "landing_overview.pdf", "landing_overview.png", "report.html", "result.json"]
     assert files(tmp_path / "out") == names
     told = [line.split()[2] for line in done.err.splitlines() if line.strip()[:1].isdigit()]
     assert told == [p["name"] for p in result["phases"]]
@@ -164,7 +164,7 @@ def test_campaign_writes_its_outcomes_and_no_log(armland, tmp_path):
     done = armland(*flights)
     assert "0 of 2 landings succeed" in done.out
     assert "2 failed (seed 5, 6): still in phase" in done.out
-    assert files(tmp_path / "out") == ["campaign.json", "landing_campaign.pdf", "landing_campaign.png"]
+    assert files(tmp_path / "out") == ["campaign.json", "landing_campaign.pdf", "landing_campaign.png", "report.html"]
 
 
 def test_fault_is_injected_from_the_command_line(armland, tmp_path):

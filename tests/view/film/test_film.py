@@ -6,7 +6,7 @@ from armland.errors import ConfigurationError, LogError, PictureError
 from armland.runtime.log import Log
 from armland.scenario import load_scenario
 from armland.view.film import film as module
-from armland.view.film.film import HOLD_S, LONGEST_S, Cut, film, stills, take_of, title_of, write_stills
+from armland.view.film.film import HOLD_S, Cut, film, stills, take_of, title_of, write_stills
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_speed_that_nobody_chose_makes_a_short_film(take, tmp_path, monkeypatch)
     monkeypatch.setattr(module, "FrameStream", Pictures)
     with av.open(str(film(take, tmp_path / "film.mp4", Cut(480, 360, fps=4, plots=True)))) as file:
         frames = list(file.decode(video=0))
-    assert len(frames) / 4 <= LONGEST_S + HOLD_S + 0.5
+    assert len(frames) / 4 <= Cut().longest_s + HOLD_S + 0.5
     assert frames[0].width == 480 + 212
 
 

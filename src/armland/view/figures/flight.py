@@ -121,7 +121,7 @@ def draw_tilt(axes: Axes, run: Run) -> None:
 
 def _draw_distance(distance: Axes, time: NDArray, log: Ticks) -> None:
     Run("", time, log, DESIRED).plot(distance, np.maximum(distance_mm(log), CLOSEST_MM))
-    distance.set(yscale="log", ylim=(CLOSEST_MM, None), ylabel="horiz. distance (mm)")
+    distance.set(yscale="log", ylim=(CLOSEST_MM, None), ylabel="distance (mm)")
 
 
 def draw_forces(hinge: Axes, vertical: Axes, time: NDArray, log: Ticks, rate_hz: int) -> None:

@@ -20,9 +20,6 @@ from armland.view.flown import Flown, flown, scenario_of
 from armland.view.report import result_of
 from armland.vision.frames import FrameStream
 
-LONGEST_S = 8.0
-"""A film whose speed nobody chose lasts about as long at most."""
-
 HOLD_S = 1.2
 """How long the last picture stays, with the verdict."""
 
@@ -36,8 +33,13 @@ class Cut(NamedTuple):
     width: int = 960  # px, of the scene
     height: int = 540
     fps: int = 24
-    speed: float | None = None  # Times as fast as it was; the smallest whole number for a film of `LONGEST_S` if absent
+    speed: float | None = None  # Times as fast as it was; the smallest whole number for a film of `longest_s` if absent
     plots: bool = False
+    longest_s: float = 8.0  # About how long a film lasts at most whose speed nobody chose
+
+
+SHORT = Cut(width=800, height=450, fps=20, longest_s=5.0)
+"""Of a film that a run ends with: made in half the time."""
 
 
 class Take(NamedTuple):
@@ -84,7 +86,7 @@ def film(take: Take, path: Path, cut: Cut, progress: Progress = lambda *_: None)
         raise ConfigurationError(
             f"a film of {cut.width} x {cut.height} pixels is not possible: both must be even and at least 120"
         )
-    speed = max(float(np.ceil(take.seconds / LONGEST_S)), 1.0) if cut.speed is None else cut.speed
+    speed = max(float(np.ceil(take.seconds / cut.longest_s)), 1.0) if cut.speed is None else cut.speed
     times = np.arange(0.0, take.seconds, speed / cut.fps)
     stage = stage_of(take.log, cut.width / cut.height)
     wide = 2 * round(0.5 * STRIP * cut.width)
