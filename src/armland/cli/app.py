@@ -7,6 +7,7 @@ import typer
 from armland import __version__
 from armland.cli.commands.arm import arm
 from armland.cli.commands.detector import detector
+from armland.cli.commands.export import export
 from armland.cli.commands.gains import gains
 from armland.cli.commands.logs import log, report
 from armland.cli.commands.margins import margins
@@ -50,6 +51,7 @@ for command in (
     report,
     render,
     log,
+    export,
     arm,
     uav,
     reach,
