@@ -40,15 +40,6 @@ def campaign_sheet(summary: Summary, rows: Sequence[Row], bounds: Mapping[str, f
         all_good,
         f"95 % interval of the probability of success: {low:.1f} to {high:.1f} %.",
     )
-    spread = Grid(
-        "Spread of the figures",
-        ("figure", "median", "95 %", "worst", "seed", "bound", "verdict"),
-        [
-            (s.name, f"{s.median:.3g}", f"{s.p95:.3g}", f"{s.worst:.3g}", f"{s.worst_seed}", *_bound(s.bound, s.holds))
-            for s in summary.spreads
-        ],
-        left=(0, 6),
-    )
     words = (
         "Each panel has one figure of merit: its value in each flight over the share of flights that stay below it. Dots: flights that "
         "succeed; crosses: flights that fail; dashed: the bound."
@@ -62,7 +53,7 @@ def campaign_sheet(summary: Summary, rows: Sequence[Row], bounds: Mapping[str, f
         _spread_tiles(summary),
         [
             _failures(rows, metadata, attached),
-            Section("Spread", drawings=[figure], grids=[spread]),
+            Section("Spread", drawings=[figure], grids=[_spread(summary)]),
             Section(
                 "Limits",
                 [f"Limits violated: {violated}.", f"Missed captures that were tried again: {summary.retries}."],
@@ -72,6 +63,15 @@ def campaign_sheet(summary: Summary, rows: Sequence[Row], bounds: Mapping[str, f
         ],
         again({**metadata, "seed": str(rows[0]["seed"])}, attached, ("--seeds", str(len(rows)))),
     )
+
+
+def _spread(summary: Summary) -> Grid:
+    rows = [
+        (s.name, f"{s.median:.3g}", f"{s.p95:.3g}", f"{s.worst:.3g}", f"{s.worst_seed}", *_bound(s.bound, s.holds))
+        for s in summary.spreads
+    ]
+    columns = ("figure", "median", "95 %", "worst", "seed", "bound", "verdict")
+    return Grid("Spread of the figures", columns, rows, left=(0, 6))
 
 
 def _failures(rows: Sequence[Row], metadata: Mapping[str, str], attached: bytes | None) -> Section:
