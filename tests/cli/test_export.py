@@ -24,6 +24,7 @@ def test_parquet_into_a_file_or_a_folder(armland, log, tmp_path, landed) -> None
         assert pq.read_metadata(tmp_path / file).num_rows == len(landed.ticks)
 
 
+@pytest.mark.slow
 def test_rerun_and_csv(armland, log, tmp_path) -> None:
     done = armland("export", log, "--rerun", "run.rrd", "--csv", "csv")
     assert done.code == 0, done.err

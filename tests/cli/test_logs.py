@@ -51,6 +51,7 @@ def test_former_page_goes_with_the_former_result(armland, log, tmp_path) -> None
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["notes.html", "result.json"]
 
 
+@pytest.mark.slow
 def test_log_that_was_cut_off_is_shown_as_far_as_it_goes(armland, log, tmp_path) -> None:
     (tmp_path / "cut.mcap").write_bytes(log.read_bytes()[: log.stat().st_size // 2])
     done = armland("report", "cut.mcap", "--out", "out")

@@ -13,6 +13,7 @@ def log(landed, tmp_path):
     return str(landed.log)
 
 
+@pytest.mark.slow
 def test_film_and_stills(armland, log, tmp_path) -> None:
     done = armland(
         *("render", log, "--video", "f.mp4", "--stills", "s", "--size", "160x120", "--fps", "2", "--speed", "9")

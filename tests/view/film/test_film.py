@@ -66,6 +66,7 @@ def test_film_is_drawn(take, tmp_path) -> None:
     assert (orange[0] != orange[2]).sum() > 50
 
 
+@pytest.mark.slow
 def test_still_of_each_phase(take, tmp_path) -> None:
     try:
         paths = write_stills(take, tmp_path, Cut(160, 120))

@@ -22,7 +22,7 @@ CASES = {
 }
 
 
-SLOW = [pytest.param(case, marks=pytest.mark.slow if case not in ("faults", "row") else ()) for case in CASES]
+SLOW = [pytest.param(case, marks=pytest.mark.slow if case not in ("faults",) else ()) for case in CASES]
 
 
 @pytest.mark.parametrize("case", SLOW)

@@ -30,6 +30,7 @@ def test_letters_stay_letters_and_numbers_are_short(overview) -> None:
     assert len(overview.svg) < 400_000
 
 
+@pytest.mark.slow
 def test_names_of_two_figures_do_not_clash(landed) -> None:
     one, two = (drawing(n, "t", "w", lambda: overview_figure(landed)).svg for n in ("one", "two"))
     ids = [set(re.findall(r'\bid="([^"]+)"', svg)) for svg in (one, two)]
@@ -39,10 +40,12 @@ def test_names_of_two_figures_do_not_clash(landed) -> None:
     assert {a or b for a, b in used} <= ids[0]
 
 
+@pytest.mark.slow
 def test_same_figure_gives_the_same_bytes(landed, overview) -> None:
     assert drawing("overview", "Over time", "What it shows.", lambda: overview_figure(landed)) == overview
 
 
+@pytest.mark.slow
 def test_nothing_covers_anything_in_the_letters_of_screens(landed) -> None:
     with screen_style():
         figure = overview_figure(landed)

@@ -49,6 +49,7 @@ def logs():
     return out
 
 
+@pytest.mark.slow
 def test_paper_page_has_claims_and_figures(logs, monkeypatch, taken_apart) -> None:
     monkeypatch.setattr(study, "strip", lambda log: Section("Film strip"))
     result = result_of(logs)

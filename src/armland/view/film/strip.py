@@ -1,5 +1,6 @@
 """Plots beside a film: heights, forces and tilt over time, drawn once; what is yet to come is pale."""
 
+import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -18,7 +19,8 @@ DPI = 100
 PALE = 0.72
 """Share of white in what is yet to come."""
 
-STYLE = {"font.family": "DejaVu Sans", "mathtext.fontset": "dejavusans", "font.size": 9.0, "legend.fontsize": 8.0}
+LETTERS = 9.0 / 540.0
+"""Size of the letters, points, over the height of the strip, px."""
 
 
 class Strip:
@@ -32,9 +34,9 @@ class Strip:
     """
 
     def __init__(self, run: Flown, phases: list[PhaseTime], width: int, height: int) -> None:
-        import matplotlib.style
-
-        with paper_style(), matplotlib.style.context(STYLE):
+        letters = {"font.size": LETTERS * height, "legend.fontsize": 0.9 * LETTERS * height}
+        style = {"font.family": "DejaVu Sans", "mathtext.fontset": "dejavusans", **letters}
+        with paper_style(), matplotlib.style.context(style):
             figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, layout="constrained")
             canvas = FigureCanvasAgg(figure)
             panels = list(figure.subplots(4, 1, sharex=True))
