@@ -22,8 +22,8 @@ help: ## list the targets (default)
 	@echo 'armland: make TARGET [PYTHON=python3.12] [ARGS="..."]'
 	@awk -F ': .*## ' '/^[a-z]+:.*## / { printf "  %-7s %s\n", $$1, $$2 }' Makefile
 
-run: $(STAMP) ## land a UAV; ARGS is passed to `armland land`
-	@.venv/bin/armland land $(ARGS)
+run: $(STAMP) ## land a UAV, with report and film; ARGS is passed to `armland land`
+	@.venv/bin/armland land --film $(ARGS)
 
 test: $(STAMP) ## run the checks: ruff, mypy, pytest without the slow tests; ARGS is passed to pytest
 	.venv/bin/ruff check .

@@ -40,7 +40,7 @@ def test_landing_leaves_result_log_and_figures(armland, tmp_path):
     result = json.loads(done.out)
     assert result == json.loads((tmp_path / "out" / "result.json").read_text())
     assert (result["success"], result["seed"]) == (True, 3)
-    names = ["landing.mcap", "landing_overview.pdf", "landing_overview.png", "result.json"]
+    names = ["landing.mcap", "landing_overview.pdf", "landing_overview.png", "report.html", "result.json"]
     assert files(tmp_path / "out") == names
     told = [line.split()[2] for line in done.err.splitlines() if line.strip()[:1].isdigit()]
     assert told == [p["name"] for p in result["phases"]]
@@ -164,7 +164,7 @@ def test_campaign_writes_its_outcomes_and_no_log(armland, tmp_path):
     done = armland(*flights)
     assert "0 of 2 landings succeed" in done.out
     assert "2 failed (seed 5, 6): still in phase" in done.out
-    assert files(tmp_path / "out") == ["campaign.json", "landing_campaign.pdf", "landing_campaign.png"]
+    assert files(tmp_path / "out") == ["campaign.json", "landing_campaign.pdf", "landing_campaign.png", "report.html"]
 
 
 def test_fault_is_injected_from_the_command_line(armland, tmp_path):
@@ -322,3 +322,27 @@ def test_another_arm_lands_without_being_told_its_pose(armland, tmp_path, file):
     arm = str(ROOT / "examples" / file)
     done = armland("land", "--arm", arm, "--ee", "tool0", "--no-figures", "--no-log", "--out", "out", "--json")
     assert (done.code, json.loads(done.out)["state"]) == (0, "standing"), done.err
+
+
+def test_film_is_made_at_the_end_where_it_is_asked_for(armland, tmp_path, monkeypatch):
+    from armland.view.film import film as films
+
+    def film(take, path, cut, progress):
+        assert take.run.name == "landing"
+        progress(1, 1)
+        path.write_text(f"{cut.fps}")
+
+    monkeypatch.setattr(films, "film", film)
+    done = armland("land", "--seed", "3", "--no-figures", "--no-log", "--film", "--out", "out", *SHORT)
+    assert done.err.count("armland:") == 0
+    assert files(tmp_path / "out") == ["film.mp4", "result.json"]
+    assert armland("land", "--seed", "3", "--no-figures", "--out", "out", *SHORT).code == 1
+    assert files(tmp_path / "out") == ["landing.mcap", "result.json"]
+
+
+def test_film_that_cannot_be_drawn_changes_no_verdict(armland, tmp_path, monkeypatch):
+    monkeypatch.setenv("MUJOCO_GL", "disable")
+    done = armland("land", "--seed", "3", "--no-figures", "--film", "--out", "out")
+    assert done.code == 0
+    assert "armland: no film: no OpenGL for off-screen pictures" in done.err
+    assert files(tmp_path / "out") == ["landing.mcap", "result.json"]

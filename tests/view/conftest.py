@@ -4,8 +4,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from armland import __version__
 from armland.experiments.judge.brief import brief_of
 from armland.records import tick_layout
+from armland.runtime.log import Log
 from armland.view.flown import Flown
 
 RATE_HZ = 100
@@ -80,6 +82,33 @@ def landing():
 def landed(landing) -> Flown:
     """Its run, as figures and tables read it."""
     return Flown("landing", landing.ticks, brief_of(landing.metadata))
+
+
+@pytest.fixture(scope="session")
+def log_of() -> Callable[..., Log]:
+    """The log of an episode, as it would be read back."""
+
+    def make(episode) -> Log:
+        metadata = {**episode.metadata, "version": __version__, "joints": "7"}
+        return Log(episode.ticks, metadata, {"scenario.toml": b'base = "landing"'}, True)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def landing_log(landing, log_of) -> Log:
+    """Its log."""
+    return log_of(landing)
+
+
+@pytest.fixture(scope="session")
+def sea_log(log_of) -> Log:
+    """The log of the first second of a landing at sea, in a plant that differs from the belief."""
+    from armland.experiments.episode import fly
+    from armland.scenario import load_scenario
+
+    changes = {"sea": {"state": "ss3"}, "deviation": {"level": "published"}, "run": {"duration_s": 1.0}}
+    return log_of(fly(load_scenario("landing", changes), "landing", seed=5))
 
 
 @pytest.fixture(scope="session")

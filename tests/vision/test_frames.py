@@ -109,3 +109,32 @@ def test_coloured_pictures_keep_their_colours(ball) -> None:
     middle = picture[60, 80].astype(int)
     assert middle[1] == pytest.approx(int(grey[60, 80]), abs=2)
     assert max(middle[0], middle[2]) < 5
+
+
+def test_quick_pictures_show_the_same(ball) -> None:
+    drawn(ball, [0.0])
+    pictures = []
+    for quick in (False, True):
+        with FrameStream(ball, 160, 120, "eye", coloured=True, quick=quick) as stream:
+            pictures.append(stream.draw([0.4]).astype(int))
+    apart = np.abs(pictures[0] - pictures[1]).max(axis=2)
+    assert (apart > 30).mean() < 0.03
+    assert pictures[1].shape == (120, 160, 3)
+
+
+def test_height_field_follows_what_it_is_told(ball) -> None:
+    drawn(ball, [0.0])
+    field = """
+    <mujoco>
+      <visual><headlight ambient="1 1 1" diffuse="0 0 0" specular="0 0 0"/></visual>
+      <asset><hfield name="water" nrow="20" ncol="20" size="1 1 1 0.01"/></asset>
+      <worldbody>
+        <camera name="eye" pos="0 -4 0.5" xyaxes="1 0 0 0 0 1" fovy="45"/>
+        <geom type="hfield" hfield="water" rgba="0 0.7 0 1"/>
+      </worldbody>
+    </mujoco>
+    """
+    model = mujoco.MjModel.from_xml_string(field)
+    with FrameStream(model, 160, 120, "eye") as stream:
+        low, high = (int((stream.draw([], np.full(400, share)) > 100).sum()) for share in (0.1, 0.9))
+    assert high > 3 * low > 0

@@ -7,18 +7,36 @@ import typer
 from armland import __version__
 from armland.cli.commands.arm import arm
 from armland.cli.commands.detector import detector
+from armland.cli.commands.doctor import doctor
+from armland.cli.commands.export import export
 from armland.cli.commands.gains import gains
 from armland.cli.commands.logs import log, report
 from armland.cli.commands.margins import margins
 from armland.cli.commands.paper import paper
 from armland.cli.commands.reach import reach
+from armland.cli.commands.render import render
 from armland.cli.commands.run import land, run, takeoff
 from armland.cli.commands.studies import envelope, takeoff_weight, verify
 from armland.cli.commands.uav import uav
 
+SCHEMA_EPILOG = """**Examples**
+
+`armland schema` prints it; with `> scenario.schema.json` behind it, a file that an editor can be told of.
+"""
+
+EPILOG = """**Examples**
+
+`armland land` lands a UAV; figures, log and report are in out/land.
+
+`armland land --help` has more of them; so has each command.
+
+`armland --install-completion` lets the shell complete commands and options.
+"""
+
 app = typer.Typer(
     name="armland",
     help="Simulates, proves, flies and judges the landing of a VTOL UAV that a robot arm catches and puts down.",
+    epilog=EPILOG,
     no_args_is_help=True,
     add_completion=True,
     pretty_exceptions_enable=False,
@@ -47,7 +65,9 @@ for command in (
     run,
     paper,
     report,
+    render,
     log,
+    export,
     arm,
     uav,
     reach,
@@ -57,11 +77,12 @@ for command in (
     margins,
     takeoff_weight,
     detector,
+    doctor,
 ):
     app.command(epilog=vars(command)["epilog"])(command)
 
 
-@app.command()
+@app.command(epilog=SCHEMA_EPILOG)
 def schema(kind: Annotated[Literal["scenario", "landing", "paper"], typer.Argument(hidden=True)] = "scenario") -> None:
     """Print the JSON schema of a scenario file, for editors that complete and check TOML."""
     from armland.scenario import schema as scenario_schema

@@ -135,7 +135,11 @@ MADE = {
 }
 """Options that a scenario is made by, see `load`."""
 
-SHOWN = {"as_json": AS_JSON, "figures": option(bool, "Draw the figures.", "--figures/--no-figures", default=True)}
+FIGURES = option(
+    bool, "Draw the figures, and write the report where the command has one.", "--figures/--no-figures", default=True
+)
+
+SHOWN = {"as_json": AS_JSON, "figures": FIGURES}
 """Options that say how a result is shown."""
 
 FLOWN = {
@@ -162,6 +166,7 @@ FLOWN = {
     "jobs": option(int | None, "Flights of a campaign at a time; one per core if absent.", min=1, max=1000),
     **MADE,
     **SHOWN,
+    "film": option(bool, "Make a short film of a single flight, film.mp4.", "--film", default=False),
     "log": option(bool, "Write the run log (MCAP) of a single flight.", "--log/--no-log", default=True),
 }
 """Options of a command that flies."""

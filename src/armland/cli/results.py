@@ -24,6 +24,8 @@ class Work(NamedTuple):
     data: dict[str, Any]  # Plain data, for JSON
     show: Callable[[Path], object]  # Prints tables; takes the folder of the results
     draw: Callable[[Path], object] | None = None  # Draws figures into a folder
+    page: Callable[[Path], object] | None = None  # Writes the report as a page into a folder
+    film: Callable[[Path], object] | None = None  # Makes a film in a folder
 
 
 def publish(given: dict[str, Any], file: str, owned: Sequence[str], work: Callable[["Results"], Work]) -> NoReturn:
@@ -44,9 +46,11 @@ def publish(given: dict[str, Any], file: str, owned: Sequence[str], work: Callab
         text = json.dumps(done.data, indent=2)
         results.write(file, text + "\n")
         results.keep()
-        if done.draw is not None and given.get("figures", True):
-            with attempted("figures"):
-                done.draw(results.folder)
+        extras = {"figures": done.draw, "report": done.page} if given.get("figures", True) else {}
+        for what, make in {**extras, "film": done.film}.items():
+            if make is not None:
+                with attempted(what):
+                    make(results.folder)
     if given["as_json"]:
         print(text)
     else:

@@ -5,10 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
+from armland.errors import ConfigurationError, LogError
 from armland.experiments.judge.brief import Brief, brief_of
 from armland.experiments.judge.deck import seen_from_deck
 from armland.runtime.log import Log
+from armland.scenario import Scenario
 
 Ticks = Mapping[str, NDArray[np.void]]  # Messages by name, (ticks,) each
 
@@ -34,3 +37,21 @@ def flown(log: Log) -> Flown:
     """
     brief = brief_of(log.metadata)
     return Flown(log.metadata.get("experiment") or brief.mission, seen_from_deck(log.messages), brief)
+
+
+def scenario_of(log: Log) -> Scenario:
+    """The scenario that stands in a log.
+
+    Raises:
+        LogError: there is none, or this version does not know it.
+    """
+    text, version = log.metadata.get("scenario"), log.metadata.get("version", "of another version")
+    if text is None:
+        raise LogError(f"the log holds no scenario; it has {', '.join(sorted(log.metadata))}")
+    try:
+        return Scenario.model_validate_json(text)
+    except (ValidationError, ConfigurationError) as e:
+        first = str(e).splitlines()[0][:120]
+        raise LogError(
+            f"this version does not know the log's scenario ({first}); read it with armland {version}"
+        ) from e

@@ -63,6 +63,21 @@ def draw(out: Path, logs: Sequence[Log]) -> list[Path]:
         return [path for run in runs for path in draw_flight(out, run)]
 
 
+def write_report(out: Path, logs: Sequence[Log], result: Mapping[str, Any]) -> Path:
+    """Write the page of one run, or of experiments of the paper together, into the folder `out`; returns its path.
+
+    Raises:
+        LogError: a log that holds too little for it.
+    """
+    from armland.view.page.flight import flight_sheet
+    from armland.view.page.sheet import write_page
+    from armland.view.page.study import paper_sheet
+
+    with _doubted():
+        sheet = paper_sheet(logs, result) if "experiments" in result else flight_sheet(logs[0], result)
+        return write_page(out, sheet)
+
+
 def print_run(result: Mapping[str, Any], log: Log | None, out: Path) -> None:
     """Print the tables of a result; what needs the log is left out without one."""
     if "experiments" in result:

@@ -44,13 +44,23 @@ class FrameStream:
         height: px.
         camera: name of the model's camera.
         coloured: whether pictures have colours and shadows.
+        quick: whether OpenGL's own smoothing of edges is enough, which draws in half the time.
 
     Raises:
         PictureError: as for `frames`, on entry.
     """
 
-    def __init__(self, model: mujoco.MjModel, width: int, height: int, camera: str, coloured: bool = False) -> None:
-        self.model, self.width, self.height, self.camera, self.coloured = model, width, height, camera, coloured
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        width: int,
+        height: int,
+        camera: str,
+        coloured: bool = False,
+        quick: bool = False,
+    ) -> None:
+        self.model, self.width, self.height, self.camera = model, width, height, camera
+        self._kind = f"{'coloured' if coloured else 'grey'}{'-quick' if quick else ''}"
         self._shape = (height, width, 3) if coloured else (height, width)
         self._child: subprocess.Popen[bytes] | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
@@ -62,7 +72,7 @@ class FrameStream:
         mujoco.mj_saveModel(self.model, str(folder / "scene.mjb"), None)
         # Without -P a folder named `mujoco` where the user stands would be imported in its place.
         command = [sys.executable, "-P", "-m", "armland.vision.frames", str(folder), self.camera]
-        command += [str(self.width), str(self.height), "coloured" if self.coloured else "grey"]
+        command += [str(self.width), str(self.height), self._kind]
         complaints = []
         for backend in opengl.backends():
             with open(folder / "errors.txt", "wb") as errors:
@@ -89,8 +99,11 @@ class FrameStream:
         assert self._folder is not None
         self._folder.cleanup()
 
-    def draw(self, qpos: ArrayLike) -> NDArray[np.uint8]:
+    def draw(self, qpos: ArrayLike, surface: ArrayLike = ()) -> NDArray[np.uint8]:
         """Picture (height, width), or (height, width, 3) in colour, at `qpos` (nq,), m and rad.
+
+        Args:
+            surface: heights (nhfielddata,) of the model's height fields, each between 0 and 1; none where it has none.
 
         Raises:
             PictureError: the child process has died, or gives no picture within `TIMEOUT_S`.
@@ -99,6 +112,7 @@ class FrameStream:
         assert self._child.stdin is not None
         try:
             self._child.stdin.write(np.ascontiguousarray(qpos, dtype=float).tobytes())
+            self._child.stdin.write(np.ascontiguousarray(surface, dtype=np.float32).tobytes())
             self._child.stdin.flush()
         except OSError as e:
             raise PictureError(f"the process that draws pictures has ended: {e.strerror}") from e
@@ -129,9 +143,10 @@ class FrameStream:
             child.wait()
 
 
-def stream(folder: str, camera: str, width: int, height: int, coloured: bool) -> None:
+def stream(folder: str, camera: str, width: int, height: int, kind: str) -> None:
     """The child's part: a picture of `scene.mjb` in `folder` on standard output for every qpos on standard input."""
-    model, k = mujoco.MjModel.from_binary_path(f"{folder}/scene.mjb"), SUPERSAMPLING
+    coloured, k = kind.startswith("coloured"), 1 if kind.endswith("quick") else SUPERSAMPLING
+    model = mujoco.MjModel.from_binary_path(f"{folder}/scene.mjb")
     model.vis.global_.offwidth, model.vis.global_.offheight = k * width, k * height
     if not coloured:
         # OpenGL's own smoothing is of edges only; supersampling also smooths what is printed on a face.
@@ -144,19 +159,40 @@ def stream(folder: str, camera: str, width: int, height: int, coloured: bool) ->
         renderer.render()
         sys.stdout.buffer.write(READY)
         sys.stdout.buffer.flush()
-        while len(raw := sys.stdin.buffer.read(8 * model.nq)) == 8 * model.nq:
-            data.qpos[:] = np.frombuffer(raw)
+        while _told(model, data, renderer):
             mujoco.mj_forward(model, data)
             renderer.update_scene(data, camera, option)
             renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] &= coloured
+            # Where there is water around, the far of it is lost in the mist.
+            renderer.scene.flags[mujoco.mjtRndFlag.mjRND_FOG] = coloured and model.nhfield > 0
             # A grey sensor sees best what is green.
-            pixels = renderer.render().astype(np.uint16)[..., slice(None) if coloured else 1]
-            total = sum((pixels[i::k, j::k] for i in range(k) for j in range(k)), np.zeros_like(pixels[::k, ::k]))
-            mean = np.rint(total / k**2) if coloured else (total + k**2 // 2) // k**2
-            sys.stdout.buffer.write(mean.astype(np.uint8).tobytes())
+            pixels = renderer.render()[..., slice(None) if coloured else 1]
+            sys.stdout.buffer.write((_mean(pixels, k, coloured) if k > 1 else pixels).tobytes())
             sys.stdout.buffer.flush()
+
+
+def _told(model: mujoco.MjModel, data: mujoco.MjData, renderer: mujoco.Renderer) -> bool:
+    # Reads what to show next; false where there is no more.
+    own = {"qpos": 8 * model.nq, "surface": 4 * model.nhfielddata}
+    qpos, surface = (sys.stdin.buffer.read(size) for size in own.values())
+    if len(qpos) != own["qpos"] or len(surface) != own["surface"]:
+        return False
+    data.qpos[:] = np.frombuffer(qpos)
+    if surface:
+        model.hfield_data[:] = np.frombuffer(surface, np.float32)
+        for field in range(model.nhfield):
+            mujoco.mjr_uploadHField(model, renderer._mjr_context, field)
+    return True
+
+
+def _mean(pixels: NDArray[np.uint8], k: int, coloured: bool) -> NDArray[np.uint8]:
+    # Of each k x k pixels.
+    wide = pixels.astype(np.uint16)
+    total = sum((wide[i::k, j::k] for i in range(k) for j in range(k)), np.zeros_like(wide[::k, ::k]))
+    mean = np.rint(total / k**2) if coloured else (total + k**2 // 2) // k**2
+    return mean.astype(np.uint8)
 
 
 if __name__ == "__main__":
     folder, camera, width, height, kind = sys.argv[1:]
-    stream(folder, camera, int(width), int(height), kind == "coloured")
+    stream(folder, camera, int(width), int(height), kind)

@@ -5,6 +5,7 @@ driver can end the process. A child can be given the right variable, and its dea
 """
 
 import os
+import subprocess
 import sys
 
 import mujoco
@@ -36,6 +37,38 @@ def refusal(complaints: list[str]) -> PictureError:
     """The error that says what each backend said, and what would help."""
     remedy = f"unset MUJOCO_GL, or {REMEDY}" if os.environ.get("MUJOCO_GL") else REMEDY
     return PictureError(f"no OpenGL for off-screen pictures ({'; '.join(complaints)}); {remedy}")
+
+
+PROBE = "import mujoco; mujoco.Renderer(mujoco.MjModel.from_xml_string('<mujoco/>'), 8, 8).render()"
+"""What a backend that works can do."""
+
+PROBE_S = 60.0
+
+
+def working_backend() -> str:
+    """The first backend that draws; empty where it is the system's own.
+
+    Raises:
+        PictureError: none does; the message says what each complained of, and what would help.
+    """
+    complaints = []
+    for backend in backends():
+        try:
+            done = subprocess.run(
+                [sys.executable, "-P", "-c", PROBE],
+                env=environment(backend),
+                capture_output=True,
+                timeout=PROBE_S,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            complaints.append(f"{backend or 'default'}: no picture in {PROBE_S:g} s")
+            continue
+        if done.returncode == 0:
+            return backend
+        said = done.stderr.decode("utf-8", "replace")
+        complaints.append(f"{backend or 'default'}: {last_line(said, done.returncode)}")
+    raise refusal(complaints)
 
 
 def last_line(said: str, code: int | None) -> str:

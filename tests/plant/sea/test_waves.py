@@ -6,7 +6,7 @@ from scipy.signal import welch
 
 from armland.plant.sea.hull import contour
 from armland.plant.sea.spectra import bretschneider
-from armland.plant.sea.waves import spreading, wave_motion
+from armland.plant.sea.waves import drawn_waves, spreading, wave_motion
 
 # Significant single amplitudes of heave m, heave speed m/s, pitch and pitch speed in degrees; head sea, long-crested.
 TABLE = {
@@ -95,3 +95,17 @@ def test_seed_draws_phases_and_direction_and_nothing_else_does(landing):
     assert not np.allclose(wave_motion(one).amplitude, wave_motion(other).amplitude)
     noisy = wave_motion(one.replaced({"deviation": {"level": "harsh"}}))
     np.testing.assert_array_equal(noisy.amplitude, wave_motion(one).amplitude)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_hull_follows_the_water_that_is_drawn(landing, seed):
+    """Heave and pitch of a contour hull are mean and slope of the water over its waterline, put together here from points."""
+    scenario = landing(sea={"state": "ss3"}).with_seed(seed)
+    waves, motion = drawn_waves(scenario), wave_motion(scenario)
+    x, y = (np.linspace(-h, h, 41) for h in (2.0, 0.8))
+    for t in (0.0, 3.7):
+        water, q = waves.elevation(t, x, y), motion.at(np.array([t]))[0]
+        assert water.mean() == pytest.approx(q[2], abs=2e-3)
+        # Bow down is positive pitch.
+        assert -np.polyfit(x, water.mean(axis=1), 1)[0] == pytest.approx(q[4], abs=3e-3)
+    assert abs(waves.elevation(0.0, x, y).mean() - motion.at(np.array([3.7]))[0, 2]) > 2e-3

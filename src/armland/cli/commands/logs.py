@@ -11,7 +11,7 @@ from armland.errors import ConfigurationError
 
 REPORT_EPILOG = f"""**Examples**
 
-`armland report out/land/landing.mcap` makes figures, tables and result.json of a landing anew, in out/report.
+`armland report out/land/landing.mcap` makes report.html, figures, tables and result.json of a landing anew, in out/report.
 
 `armland report out/paper --out /tmp/again` does so for all logs of a folder; experiments share their figures and verdicts.
 
@@ -46,19 +46,23 @@ def log(**given: Any) -> None:
     **options.SHOWN,
 )
 def report(**given: Any) -> None:
-    """Make figures, tables and result.json of a run, or of the paper's experiments together, from their logs."""
+    """Make report, figures, tables and result.json of a run, or of the paper's experiments together, from their logs."""
     from armland.runtime.log import read_log
-    from armland.view.report import draw, print_run, result_of, succeeded
+    from armland.view.report import draw, print_run, result_of, succeeded, write_report
 
     logs = [read_log(file) for file in _logs(given["files"])]
     result = result_of(logs)
 
     def work(_: Results) -> Work:
         return Work(
-            succeeded(result), result, lambda out: print_run(result, logs[0], out), lambda folder: draw(folder, logs)
+            succeeded(result),
+            result,
+            lambda out: print_run(result, logs[0], out),
+            lambda folder: draw(folder, logs),
+            lambda folder: write_report(folder, logs, result),
         )
 
-    publish(given, "result.json", ("*_overview.p??", "fig*.p??", "scene.png"), work)
+    publish(given, "result.json", ("*_overview.p??", "fig*.p??", "scene.png", "report.html"), work)
 
 
 def _logs(files: list[Path]) -> list[Path]:

@@ -1,5 +1,6 @@
 """The command `paper`: experiments E1 to E3 with their verdicts, their spread, and the comparison of laws."""
 
+from functools import cache
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from rich.console import Console
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 PAPER_EPILOG = f"""**Examples**
 
-`armland paper` runs E1, E2 and E3 and writes figures, logs and result.json to out/paper.
+`armland paper` runs E1, E2 and E3 and writes report.html, figures, logs and result.json to out/paper.
 
 `armland paper --json | jq .verdicts` prints the result alone.
 
@@ -79,11 +80,13 @@ def paper(**given: Any) -> None:
 def _paper(scenario: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:
     from armland.experiments.paper import prepare, run_experiments
     from armland.runtime.log import read_log
-    from armland.view.report import draw
+    from armland.view.report import draw, write_report
     from armland.view.tables.paper import print_paper
 
     with console.status("Looking for a pose from which the arm reaches the whole path", spinner="line"):
         flights = prepare(scenario)
+
+    logs = cache(lambda: [read_log(given["out"] / f"{name}.mcap") for name in flights])
 
     def work(results: Results) -> Work:
         with reported(console) as tell:
@@ -93,14 +96,17 @@ def _paper(scenario: "Scenario", given: dict[str, Any], console: Console) -> NoR
             outcome.reproduced,
             result,
             lambda out: print_paper(result, out),
-            lambda folder: draw(folder, [read_log(given["out"] / f"{name}.mcap") for name in flights]),
+            lambda folder: draw(folder, logs()),
+            lambda folder: write_report(folder, logs(), result),
         )
 
-    publish(given, "result.json", ("*.mcap", "fig*.p??", "scene.png"), work)
+    publish(given, "result.json", ("*.mcap", "fig*.p??", "scene.png", "report.html"), work)
 
 
 def _compare(scenario: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:
     from armland.experiments.comparison import compare
+    from armland.view.page.sheet import write_page
+    from armland.view.page.study import comparison_sheet
     from armland.view.tables.paper import print_comparison
 
     def work(_: Results) -> Work:
@@ -112,9 +118,15 @@ def _compare(scenario: "Scenario", given: dict[str, Any], console: Console) -> N
                 lambda name, done, total: bar.update(task, completed=done, total=total, description=name),
             )
         result = comparison.result()
-        return Work(all(v.holds for v in comparison.verdicts), result, lambda out: print_comparison(result, out))
+        return Work(
+            all(v.holds for v in comparison.verdicts),
+            result,
+            lambda out: print_comparison(result, out),
+            None,
+            lambda folder: write_page(folder, comparison_sheet(result, scenario, given["law"])),
+        )
 
-    publish(given, "comparison.json", (), work)
+    publish(given, "comparison.json", ("report.html",), work)
 
 
 def _spread(fitted: "Scenario", bench: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:

@@ -1,5 +1,6 @@
 """The commands that fly a mission: `run`, and `land` and `takeoff`, which are names for it."""
 
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -8,16 +9,20 @@ from rich.console import Console
 from armland.cli import options
 from armland.cli.commands.arm import joints_of, tell_arm
 from armland.cli.commands.uav import tell_uav
-from armland.cli.console import diagnostics, flights_told, phases_told, ready
+from armland.cli.console import diagnostics, flights_told, phases_told, progress_bar, ready
 from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
 
 if TYPE_CHECKING:
     from armland.experiments.episode import Flight
+    from armland.runtime.log import Log
 
 _EPILOG = """**Examples**
 
-`armland COMMAND` flies one MISSION of the scenario that comes with armland; figures, log and result.json go to out/FOLDER.
+`armland COMMAND` flies one MISSION of the scenario that comes with armland; report.html, figures, log and result.json go to
+out/FOLDER.
+
+`armland COMMAND --film` makes a film of some seconds as well; `armland render` makes others of the log.
 
 `armland COMMAND --seed 7 --json | jq .reason` prints the result alone.
 
@@ -123,14 +128,16 @@ def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Cons
     from armland.records import MESSAGES
     from armland.runtime.log import read_log
     from armland.view.flown import Flown
-    from armland.view.report import draw
+    from armland.view.report import draw, write_report
     from armland.view.tables.flight import print_flight
 
     name, out = f"{mission}.mcap", given["out"]
 
     def work(results: Results) -> Work:
-        # The figures are made from the log, also where nobody keeps it.
-        file = results.folder / name if given["log"] else results.scratch(name) if given["figures"] else None
+        # Figures, report and film are made from the log, also where nobody keeps it.
+        shown = given["figures"] or given["film"]
+        file = results.folder / name if given["log"] else results.scratch(name) if shown else None
+        log = cache(lambda: read_log(out / name if given["log"] else results.scratch(name)))
         with phases_told(console, mission) as tell:
             episode = fly_prepared(flight, file, tell)
         run = Flown(
@@ -140,16 +147,29 @@ def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Cons
             episode.result["success"],
             episode.result,
             lambda folder: print_flight(episode.result, run, folder),
-            lambda folder: draw(folder, [read_log(out / name if given["log"] else results.scratch(name))]),
+            lambda folder: draw(folder, [log()]),
+            lambda folder: write_report(folder, [log()], episode.result),
+            (lambda folder: _film(log(), folder, console)) if given["film"] else None,
         )
 
-    publish(given, "result.json", (name, "*_overview.p??", "fig*.p??", "scene.png"), work)
+    owned = (name, "*_overview.p??", "fig*.p??", "scene.png", "report.html", "film.mp4")
+    publish(given, "result.json", owned, work)
+
+
+def _film(log: "Log", folder: Path, console: Console) -> None:
+    from armland.view.film.film import SHORT, film, take_of
+
+    with progress_bar(console) as bar:
+        task = bar.add_task("film")
+        film(take_of(log), folder / "film.mp4", SHORT, lambda done, n: bar.update(task, completed=done, total=n))
 
 
 def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> NoReturn:
     from armland.experiments.campaign import campaign, summarise
     from armland.experiments.judge.figures import bounds
     from armland.view.figures.campaign import draw_campaign
+    from armland.view.page.sheet import write_page
+    from armland.view.page.study import campaign_sheet
     from armland.view.tables.campaign import print_campaign
 
     first, seeds, limits = flight.scenario.run.seed, given["seeds"], bounds(flight.brief)
@@ -166,6 +186,7 @@ def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Co
             {"summary": summary.result(), "flights": rows},
             lambda out: print_campaign(summary, rows, mission, out),
             lambda folder: draw_campaign(folder, rows, limits, mission),
+            lambda folder: write_page(folder, campaign_sheet(summary, rows, limits, flight)),
         )
 
-    publish(given, "campaign.json", (f"{mission}_campaign.p??",), work)
+    publish(given, "campaign.json", (f"{mission}_campaign.p??", "report.html"), work)

@@ -5,6 +5,8 @@ drawn, so that the sea does not come round again within hours; short-crested, it
 D = (2/π) cos²θ, |θ| < 90 degrees, since waves of one frequency from two sides would stand still in places (Jefferys 1987).
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from armland.plant.noise import stream
@@ -59,8 +61,38 @@ def density(sea: Sea, omega: Array, own: tuple[Array, Array] | None) -> Array:
     return bretschneider(omega, height, period)
 
 
+class Waves(NamedTuple):
+    """The waves of a sea, one for each band, and the response of a hull to them."""
+
+    omega: Array  # (BANDS,) rad/s
+    encounter: Array  # (BANDS,) rad/s, as the hull meets them
+    towards: Array  # (BANDS,) rad, from the bow counter-clockwise
+    amplitude: Array  # (BANDS,) m, complex: elevation at the reference point at t = 0
+    response: Array  # (BANDS, 6) m/m, rad/m, complex
+
+    def elevation(self, t: float, x: Array, y: Array) -> Array:
+        """Elevation (len(x), len(y)), m, of the water at the time `t`, s, over a grid that goes along with the hull.
+
+        Args:
+            t: since the start of the run, s.
+            x: places ahead of the reference point (k,), m.
+            y: places to port of it (n,), m.
+        """
+        number = self.omega**2 / GRAVITY
+        ahead = np.exp(-1j * np.outer(number * np.cos(self.towards), x))
+        aside = np.exp(-1j * np.outer(number * np.sin(self.towards), y))
+        now = self.amplitude * np.exp(1j * self.encounter * t)
+        return np.real((ahead * now[:, None]).T @ aside)
+
+
 def wave_motion(scenario: Scenario) -> Motion:
-    """The motion of the deck that the waves of the scenario's sea and its seed make.
+    """The motion of the deck that the waves of the scenario's sea and its seed make; errors as for `drawn_waves`."""
+    waves = drawn_waves(scenario)
+    return Motion(waves.encounter, waves.amplitude[:, None] * waves.response, np.zeros(6), np.zeros(6))
+
+
+def drawn_waves(scenario: Scenario) -> Waves:
+    """The waves of the scenario's sea that its seed draws.
 
     Raises:
         ConfigurationError: a table that cannot be used, or a response that leaves out waves of the sea.
@@ -84,7 +116,7 @@ def wave_motion(scenario: Scenario) -> Motion:
         H = contour(omega, towards, sea.hull_m, BEAM * sea.hull_m if sea.beam_m is None else sea.beam_m)
     amplitude = np.sqrt(2.0 * energy) * np.exp(1j * phase)
     encounter = omega - omega**2 / GRAVITY * sea.speed_mps * np.cos(towards)
-    return Motion(encounter, amplitude[:, None] * H, np.zeros(6), np.zeros(6))
+    return Waves(omega, encounter, towards, amplitude, H)
 
 
 def spreading(random: np.random.Generator) -> Array:

@@ -56,15 +56,14 @@ def overview_figure(run: Flown) -> Figure:
     phases = phase_times(log["mission"]["phase"], run.brief.phases, rate_hz)
     figure = sheet(PAGE_IN, 8.6)
     strip, *panels = figure.subplots(7, 1, sharex=True, height_ratios=[0.62, 1.2, 1.0, 1.0, 1.2, 1.0, 0.8])
-    _draw_place(panels[0], panels[1], time, log)
-    _draw_forces(panels[2], panels[3], time, log, rate_hz)
+    draw_height(panels[0], time, log)
+    _draw_distance(panels[1], time, log)
+    draw_forces(panels[2], panels[3], time, log, rate_hz)
     black = Run("", time, log, DESIRED)
-    black.plot_noisy(panels[4], tilt_deg(log["truth"]["quat"]))
-    panels[4].set_ylabel("UAV tilt (°)")
+    draw_tilt(panels[4], black)
     black.plot_noisy(panels[5], log["health"]["torque_ratio"])
     panels[5].set_ylabel("torque ratio (1)")
-    for axes in (panels[2], panels[4], panels[5]):
-        axes.set_ylim(bottom=0.0)
+    panels[5].set_ylim(bottom=0.0)
     for axes in (panels[0], *panels[2:]):
         axes.yaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
     panels[-1].xaxis.set_major_locator(MaxNLocator(nbins=10, integer=True))
@@ -106,18 +105,31 @@ def label_places(phases: Sequence[PhaseTime], gap_s: float) -> NDArray:
     return np.minimum(pushed, end - 0.5 * gap - steps[::-1])
 
 
-def _draw_place(height: Axes, distance: Axes, time: NDArray, log: Ticks) -> None:
+def draw_height(height: Axes, time: NDArray, log: Ticks) -> None:
+    """Draw the heights of pivot and end effector over `time` (ticks,), s."""
     Run("UAV", time, log, UAV).plot(height, log["truth"]["r"][:, 2])
     Run("arm", time, log, ARM).plot(height, log["truth"]["ee"][:, 2])
     height.set_ylabel("height (m)")
+
+
+def draw_tilt(axes: Axes, run: Run) -> None:
+    """Draw the UAV's tilt."""
+    run.plot_noisy(axes, tilt_deg(run.ticks["truth"]["quat"]))
+    axes.set_ylabel("UAV tilt (°)")
+    axes.set_ylim(bottom=0.0)
+
+
+def _draw_distance(distance: Axes, time: NDArray, log: Ticks) -> None:
     Run("", time, log, DESIRED).plot(distance, np.maximum(distance_mm(log), CLOSEST_MM))
-    distance.set(yscale="log", ylim=(CLOSEST_MM, None), ylabel="horiz. distance (mm)")
+    distance.set(yscale="log", ylim=(CLOSEST_MM, None), ylabel="distance (mm)")
 
 
-def _draw_forces(hinge: Axes, vertical: Axes, time: NDArray, log: Ticks, rate_hz: int) -> None:
+def draw_forces(hinge: Axes, vertical: Axes, time: NDArray, log: Ticks, rate_hz: int) -> None:
+    """Draw the hinge force, and who carries the weight, over `time` (ticks,), s."""
     force = np.linalg.norm(log["truth"]["hinge_force"], axis=1)
     Run("", time, log, DESIRED).plot_noisy(hinge, force)
     hinge.set_ylabel("hinge force (N)")
+    hinge.set_ylim(bottom=0.0)
     names = ("UAV (pivot, rotors)", "arm (end effector, hinge)", "cradle")
     for name, line, y in zip(names, (UAV, ARM, CRADLE), upward_forces_n(log), strict=True):
         Run(name, time, log, line).plot_noisy(vertical, y)

@@ -26,12 +26,12 @@ def print_campaign(summary: Summary, rows: Sequence[Row], mission: str, out: Pat
     console.print(f"Missed captures that were tried again: {summary.retries}.")
     violated = ", ".join(f"{name} in {n}" for name, n in summary.violated.items())
     console.print(f"Limits violated: {violated or 'none'}.")
-    for reason, seeds in _alike(rows).items():
+    for reason, seeds in alike(rows).items():
         console.print(f"{len(seeds)} failed (seed {', '.join(map(str, seeds))}): {reason}", markup=False)
     console.print(f"The data is in {out}/", markup=False)
 
 
-def _alike(rows: Sequence[Row]) -> dict[str, list[int]]:
+def alike(rows: Sequence[Row]) -> dict[str, list[int]]:
     """Seeds by the reason of their failure; reasons that differ in a number only are one, with the first seed's number."""
     seeds: dict[str, list[int]] = {}
     words: dict[str, str] = {}

@@ -1,0 +1,1 @@
+"""Run logs in the formats of other tools."""

@@ -1,0 +1,1 @@
+"""A film of a run, and stills of its phases, from its log."""
