@@ -223,7 +223,7 @@ CODE = {f: re.sub(r'"""(.|\n)*?"""|#.*', "", f.read_text("utf-8")) for f in PACK
 SETTINGS = {f: f.read_text("utf-8") for f in PACKAGE.rglob("*.toml")}
 SHARED = ("records.py", "scenario/", "scenarios/", "mission/missions/")
 """What every page may speak of; a law's page otherwise of what stands in the files that it links to."""
-PATH = re.compile(r"[\w.-]+(/[\w.-]+)*(/|\.(py|toml|md|xml|urdf|cff|lock))")
+PATH = re.compile(r"[\w.-]+(/[\w.-]+)*(/|\.(py|toml|md|xml|urdf|cff|lock|yml))")
 NAME = re.compile(r"\.?([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*)(?:\(.*\)| = .*)?")
 FOREIGN = {"pandas", "episode", "comparison", "venv", "Makefile", "PIP_INDEX_URL", "MUJOCO_GL"}
 """Of another package or tool, a variable of a snippet, a file that a command writes."""
