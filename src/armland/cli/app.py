@@ -6,6 +6,7 @@ import typer
 
 from armland import __version__
 from armland.cli.commands.arm import arm
+from armland.cli.commands.campaign import app as campaign
 from armland.cli.commands.detector import detector
 from armland.cli.commands.gains import gains
 from armland.cli.commands.logs import log, report
@@ -59,6 +60,9 @@ for command in (
     detector,
 ):
     app.command(epilog=vars(command)["epilog"])(command)
+
+
+app.add_typer(campaign, name="campaign")
 
 
 @app.command()

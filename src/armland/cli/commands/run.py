@@ -1,5 +1,6 @@
 """The commands that fly a mission: `run`, and `land` and `takeoff`, which are names for it."""
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -14,6 +15,8 @@ from armland.cli.results import Results, Work, publish
 
 if TYPE_CHECKING:
     from armland.experiments.episode import Flight
+
+STORE = "campaign.sqlite"
 
 _EPILOG = """**Examples**
 
@@ -101,10 +104,7 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
 
     hinged = mission_named(mission).start == "hinged"
     name = given["scenario"] or ("paper" if hinged else "landing")
-    loaded = options.load(name, given)
-    if not hinged and "deviation.level" not in loaded.own:
-        # What all sources give, unless the user says otherwise: a demonstrator differs from what is believed of it. The log says so.
-        loaded = options.load(name, {**given, "deviation": "published"})
+    loaded = options.load_flown(mission, name, given)
     tell_arm(loaded, diagnostics())
     tell_uav(loaded, diagnostics())
     console = ready(joints_of(loaded))
@@ -147,19 +147,27 @@ def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Cons
 
 
 def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> NoReturn:
-    from armland.experiments.campaign import campaign, summarise
+    from armland.experiments.campaign.crews import threads
+    from armland.experiments.campaign.description import Description
+    from armland.experiments.campaign.engine import Campaign, conduct
+    from armland.experiments.campaign.rows import Job
+    from armland.experiments.campaign.store import Store
+    from armland.experiments.campaign.summary import summarise
     from armland.experiments.judge.figures import bounds
     from armland.view.figures.campaign import draw_campaign
     from armland.view.tables.campaign import print_campaign
 
     first, seeds, limits = flight.scenario.run.seed, given["seeds"], bounds(flight.brief)
-    how = {"law": given["law"], "experiment": given.get("experiment"), "jobs": given["jobs"]}
+    job = Job(flight.scenario.frozen(), mission, given["law"], given.get("experiment"))
+    campaign = Campaign(Description(mission=mission, first_seed=first), job, seeds, limits)
 
-    def work(_: Results) -> Work:
-        with flights_told(console, mission, seeds) as tell:
-            rows = campaign(
-                flight.scenario, mission, range(first, first + seeds), **how, done=lambda row: tell(row["success"])
-            )
+    def work(results: Results) -> Work:
+        with (
+            Store(results.folder / STORE, write=True) as store,
+            flights_told(console, mission, seeds) as tell,
+        ):
+            conduct(campaign, store, threads(given["jobs"] or os.cpu_count() or 1), told=lambda row: tell(row.success))
+            rows = [row.judged() for row in store.rows()]
         summary = summarise(rows, limits)
         return Work(
             summary.successes == seeds,
@@ -168,4 +176,4 @@ def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Co
             lambda folder: draw_campaign(folder, rows, limits, mission),
         )
 
-    publish(given, "campaign.json", (f"{mission}_campaign.p??",), work)
+    publish(given, "campaign.json", (f"{mission}_campaign.p??", STORE), work)
