@@ -148,7 +148,7 @@ def test_a_scenario_whose_files_have_changed_is_refused(fakes, made_up, tmp_path
     conducted(campaign, tmp_path / "a.sqlite", fakes.quick)
     conducted(campaign, tmp_path / "a.sqlite", fakes.quick)
     wind.write_text("time_s,x\n0,2\n")
-    with pytest.raises(ConfigurationError, match="contents of the scenario's files: .*wind.csv"):
+    with pytest.raises(ConfigurationError, match=r"contents of the scenario's files: .*wind.csv"):
         conducted(campaign, tmp_path / "a.sqlite", fakes.quick)
 
 

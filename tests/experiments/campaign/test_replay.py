@@ -40,7 +40,7 @@ def test_row_is_the_same_bit_for_bit_with_its_log(store, tmp_path):
 
 def test_row_that_was_refused_is_refused_again(store):
     (refused, *_) = [row for row in store.rows() if not row.digest]
-    with pytest.raises(ConfigurationError, match="air.wind_mps: 90.0 lies outside"):
+    with pytest.raises(ConfigurationError, match=r"air\.wind_mps: 90.0 lies outside"):
         replay(store, refused.run)
 
 

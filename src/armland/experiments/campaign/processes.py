@@ -19,8 +19,8 @@ FRUGAL = {
     "OPENBLAS_NUM_THREADS": "1",
     "OMP_NUM_THREADS": "1",
 }
-"""Memory of a flight's ticks goes back to the system after it; by default the C library keeps it in pieces, and a process grows to three
-times of what it needs. And one core is one flight's."""
+"""Memory of a flight's ticks goes back to the system after it: by default the C library keeps it in pieces, and a process grows to
+three times of what it needs. And one flight is for one core."""
 
 TRIES = 2
 """Workers that may die over a flight before it is a row with that error."""

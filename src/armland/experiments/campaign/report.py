@@ -7,6 +7,7 @@ from scipy.stats import binomtest
 
 from armland.experiments.campaign.engine import Campaign, campaign_of
 from armland.experiments.campaign.paired import Pairing, compare
+from armland.experiments.campaign.rows import BROKE, KILLED, REFUSED
 from armland.experiments.campaign.sensitivity import Sensitivity, as_numbers, sensitivity
 from armland.experiments.campaign.stopping import Interval, Watch
 from armland.experiments.campaign.store import Store
@@ -16,8 +17,6 @@ from armland.experiments.campaign.table import Table, tabulate
 QUANTILES = (0.05, 0.5, 0.95, 0.99)
 WORST = 10
 MOST_COMPARED = 20
-MOST_SHARE = 2.0
-"""Share of its bound at which a flight is as bad as can be."""
 
 
 class Quantiles(NamedTuple):
@@ -53,8 +52,9 @@ class Worst(NamedTuple):
 
     run: int
     seed: int
+    success: bool
     share: float
-    """Largest figure over its bound; `MOST_SHARE` of a flight that failed without one."""
+    """Largest figure over its bound, a ratio."""
     why: str
     values: dict[str, Any]
 
@@ -159,12 +159,13 @@ def _worst(table: Table, store: Store, bounds: dict[str, float]) -> tuple[Worst,
     for key, column in table.figures.items():
         if bounds.get(key, 0.0) > 0.0:
             shares = np.fmax(shares, column / (bounds[key] * FIGURES[key].scale))
-    shares = np.where(table.success, shares, np.fmax(shares, MOST_SHARE))
-    order = np.lexsort((table.run, -shares, table.success))[:WORST]
+    flew = np.array([outcome not in (REFUSED, BROKE, KILLED) for outcome in table.outcome])
+    # What failed in flight, then what did not fly, then what came nearest to a bound.
+    order = np.lexsort((table.run, -shares, ~flew, table.success))[:WORST]
     rows = {row.run: row for row in store.rows([int(table.run[i]) for i in order])}
     found = [rows[int(table.run[i])] for i in order]
     return tuple(
-        Worst(row.run, row.seed, float(shares[i]), row.judged()["reason"], row.values)
+        Worst(row.run, row.seed, row.success, float(shares[i]), row.judged()["reason"], row.values)
         for i, row in zip(order, found, strict=True)
     )
 

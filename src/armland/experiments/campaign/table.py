@@ -12,7 +12,7 @@ from armland.experiments.campaign.store import Store
 from armland.experiments.campaign.summary import FIGURES, value
 from armland.rotations import Array
 
-_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
+_DETAIL = re.compile(r"\s*\([^()]*\)|-?\d+(\.\d+)?(e-?\d+)?")
 
 
 class Table(NamedTuple):
@@ -32,7 +32,7 @@ class Table(NamedTuple):
     values: dict[str, list[Any]]
     """Path in the scenario -> value of each row."""
     reasons: dict[str, tuple[int, int]]
-    """Why flights failed, numbers as the first had them -> how many did, and the row of the first."""
+    """Why flights failed, in the words of the first -> how many have the same first cause, and the row of the first."""
     cpu_s: Array
     """(k,) s."""
     wall_s: Array
@@ -67,7 +67,7 @@ def tabulate(store: Store) -> Table:
             values.setdefault(path, []).append(one)
         if not row.success:
             reason = judged["reason"]
-            entry = reasons.setdefault(_NUMBER.sub("", reason), [reason, 0, row.run])
+            entry = reasons.setdefault(cause(reason), [reason, 0, row.run])
             entry[1] += 1
     run, point, seed, success, cpu, wall = zip(*numbers, strict=True) if numbers else [()] * 6
     most = sorted(reasons.values(), key=lambda entry: -entry[1])
@@ -83,3 +83,8 @@ def tabulate(store: Store) -> Table:
         np.array(cpu, float),
         np.array(wall, float),
     )
+
+
+def cause(reason: str) -> str:
+    """What failures of one kind have in common: the first cause, without its numbers and what stands in brackets."""
+    return _DETAIL.sub("", reason).partition(";")[0].partition(",")[0].strip()

@@ -107,7 +107,7 @@ def success_map(report: Report, table: Table) -> Figure | None:
     with np.errstate(invalid="ignore"):
         rate = 100.0 * good / count
     darkest = min(50.0, float(np.nanmin(rate)))
-    figure = sheet(0.75 * WIDTH_IN, 0.9 + 0.42 * len(ticks_y))
+    figure = sheet(WIDTH_IN, 0.9 + 0.38 * len(ticks_y))
     axes = figure.subplots()
     axes.grid(visible=False)
     image = axes.imshow(rate, origin="lower", cmap="cividis", vmin=darkest, vmax=100.0, aspect="auto")
@@ -139,8 +139,8 @@ def _classes(table: Table, name: str) -> tuple[np.ndarray, list[str]]:
         index = {value: i for i, value in enumerate(distinct)}
         words = [f"{v:g}" if isinstance(v, int | float) else str(v) for v in distinct]
         return np.array([index[v if numbers is not None else str(v)] for v in column]), words
-    edges = np.linspace(numbers.min(), numbers.max(), min(MOST_CLASSES, max(2, int(len(column) ** 0.5 / 2))) + 1)
-    words = [f"{a:.3g} to {b:.3g}" for a, b in pairwise(edges)]
+    edges = np.linspace(numbers.min(), numbers.max(), min(MOST_CLASSES, max(2, int((len(column) / 8.0) ** 0.5))) + 1)
+    words = [f"{a:.2g} to {b:.2g}" for a, b in pairwise(edges)]
     return np.clip(np.searchsorted(edges, numbers, "right") - 1, 0, len(words) - 1), words
 
 

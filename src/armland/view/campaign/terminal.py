@@ -6,6 +6,7 @@ from rich.console import Console
 from rich.text import Text
 
 from armland.experiments.campaign.report import QUANTILES, PointReport, Report, short
+from armland.experiments.campaign.sensitivity import Influence
 from armland.experiments.margins.flights import shortened
 from armland.view.tables.verdicts import mark, terminal, titled
 
@@ -100,17 +101,15 @@ def _influences(console: Console, report: Report) -> None:
         return
     table = titled("What success depends on", "parameter", "share of variance", "by chance", "fails with", left=(0, 3))
     for i in (*found.single, *(pair for pair in found.pairs if pair.share > 0.0)):
-        table.add_row(
-            Text(" and ".join(i.names)), f"{i.share:.3f}", f"{i.chance:.2g}", trend_words(i.trend, len(i.names))
-        )
+        table.add_row(Text(" and ".join(i.names)), f"{i.share:.3f}", f"{i.chance:.2g}", fails_with(i))
     console.print(table)
 
 
-def trend_words(trend: float, names: int) -> str:
-    """Whether failure comes with more or less of a parameter; of more `names` than one the combination alone."""
-    if names > 1:
-        return "the combination"
-    return "more" if trend > 0.02 else "less" if trend < -0.02 else "-"
+def fails_with(i: Influence) -> str:
+    """Whether failure comes with more or less of a parameter; a dash where chance alone may have done it."""
+    if i.chance > 0.05 or i.share == 0.0:
+        return "-"
+    return "the combination" if len(i.names) > 1 else "more" if i.trend > 0.0 else "less" if i.trend < 0.0 else "some"
 
 
 def _worst(console: Console, report: Report, store: Path) -> None:
@@ -120,6 +119,6 @@ def _worst(console: Console, report: Report, store: Path) -> None:
     for w in report.worst:
         values = ", ".join(f"{name} = {short(value)}" for name, value in w.values.items())
         why = shortened(w.why) + (f" ({values})" if values else "")
-        table.add_row(str(w.run), str(w.seed), f"{w.share:.2f}", Text(why))
+        table.add_row(str(w.run), str(w.seed), f"{w.share:.2f}" if w.success else "failed", Text(why))
     console.print(table)
     console.print(Text(f"armland campaign replay {store} {report.worst[0].run} flies the first of them again."))
