@@ -5,6 +5,7 @@ The store stays with who started the campaign. Where the cluster is lost, the ca
 
 import json
 import logging
+import socket
 from collections.abc import Iterator
 from functools import partial
 from itertools import islice
@@ -19,6 +20,10 @@ AHEAD = 2
 """Flights in hand for each of the cluster's processors: one flies, one waits."""
 
 
+PATIENCE_S = 5.0
+"""How long an address may take to answer."""
+
+
 def cluster(address: str, jobs: int | None = None) -> Crew:
     """The crew of the cluster at `address`, or of this machine alone where that is `local`, `jobs` at a time, all processors if absent.
 
@@ -29,6 +34,8 @@ def cluster(address: str, jobs: int | None = None) -> Crew:
         import ray
     except ImportError as e:
         raise ConfigurationError("--ray needs Ray: install armland[cluster]") from e
+    if not _answers(address):
+        raise _nobody(address, f"nobody answers within {PATIENCE_S:g} s")
     where: dict[str, Any] = {"num_cpus": jobs} if address == "local" else {"address": address}
     try:
         ray.init(
@@ -39,10 +46,25 @@ def cluster(address: str, jobs: int | None = None) -> Crew:
         )
     except (ConnectionError, ValueError, RuntimeError, TimeoutError) as e:
         first = (str(e).strip().splitlines() or [type(e).__name__])[0]
-        raise ConfigurationError(
-            f"--ray {address!r}: no cluster answers ({first[:200]}); `ray start --head` begins one, and `--ray local` needs none"
-        ) from e
+        raise _nobody(address, first[:200]) from e
     return partial(_by_ray, jobs or max(int(ray.cluster_resources().get("CPU", 1)), 1))
+
+
+def _nobody(address: str, why: str) -> ConfigurationError:
+    hint = "`ray start --head` begins one, and `--ray local` needs none"
+    return ConfigurationError(f"--ray {address!r}: no cluster there ({why}); {hint}")
+
+
+def _answers(address: str) -> bool:
+    # Ray itself tries for minutes. What is no address with a port is for Ray to find.
+    host, _, port = address.rpartition("//")[2].rpartition(":")
+    if not host or not port.isdigit():
+        return True
+    try:
+        with socket.create_connection((host, int(port)), timeout=PATIENCE_S):
+            return True
+    except (OSError, OverflowError):
+        return False
 
 
 def _remote(work: Work, job: Job, task: Task, made: str) -> Row | str:
