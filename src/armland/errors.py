@@ -36,3 +36,11 @@ class PlantError(ArmlandError):
 
 class PictureError(ArmlandError):
     """A picture of the scene that cannot be drawn, mostly because there is no OpenGL library."""
+
+
+class StoreError(ArmlandError):
+    """A campaign's store that the disk does not take any more; what was written stays."""
+
+
+class ClusterError(ArmlandError):
+    """Workers of a campaign that cannot be reached or do not start."""

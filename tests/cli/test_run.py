@@ -159,12 +159,13 @@ def test_campaign_writes_its_outcomes_and_no_log(armland, tmp_path):
     result = json.loads(done.out)
     assert [o["seed"] for o in result["flights"]] == [5, 6]
     assert (result["summary"]["flights"], result["summary"]["successes"]) == (2, 0)
-    assert files(tmp_path / "out") == ["campaign.json"]
+    assert files(tmp_path / "out") == ["campaign.json", "campaign.sqlite"]
     assert "1 of 2 flown, 0 succeed" in done.err
     done = armland(*flights)
     assert "0 of 2 landings succeed" in done.out
     assert "2 failed (seed 5, 6): still in phase" in done.out
-    assert files(tmp_path / "out") == ["campaign.json", "landing_campaign.pdf", "landing_campaign.png", "report.html"]
+    drawn = ["landing_campaign.pdf", "landing_campaign.png"]
+    assert files(tmp_path / "out") == ["campaign.json", "campaign.sqlite", *drawn, "report.html"]
 
 
 def test_fault_is_injected_from_the_command_line(armland, tmp_path):

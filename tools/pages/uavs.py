@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 
 from armland.cli.options import load
 from armland.errors import ConfigurationError, ModelError
-from armland.experiments.campaign import campaign, value
+from armland.experiments.campaign.engine import campaign
+from armland.experiments.campaign.summary import value
 from armland.experiments.episode import prepare
 from armland.models.parameters import uav_parameters
 from armland.scenario import Scenario

@@ -6,6 +6,7 @@ import typer
 
 from armland import __version__
 from armland.cli.commands.arm import arm
+from armland.cli.commands.campaign import app as campaign
 from armland.cli.commands.detector import detector
 from armland.cli.commands.doctor import doctor
 from armland.cli.commands.export import export
@@ -80,6 +81,9 @@ for command in (
     doctor,
 ):
     app.command(epilog=vars(command)["epilog"])(command)
+
+
+app.add_typer(campaign, name="campaign")
 
 
 @app.command(epilog=SCHEMA_EPILOG)

@@ -1,5 +1,6 @@
 """Progress on standard error, and whether a start compiles."""
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -8,6 +9,9 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
 COMPILING = "Compiling the control laws: this happens once and takes less than a minute."
+
+TELL_S = 30.0
+"""Seconds between two lines about a campaign where there is no terminal."""
 
 UNKEPT = (
     "Compiling as it flies, which takes a minute or two each time: nothing compiled can be kept here. "
@@ -95,3 +99,57 @@ def flights_told(console: Console, mission: str, total: int) -> Iterator[Callabl
             console.print(f"{len(flown)} of {total} flown, {sum(flown)} succeed", highlight=False)
 
     yield tell
+
+
+@contextmanager
+def campaign_told(console: Console, mission: str, total: int, there: int = 0) -> Iterator[Callable[[bool], None]]:
+    """Takes the success of each new flight: how many, how fast, how long yet, in a bar on a terminal, every half minute without one.
+
+    Args:
+        console: where it is told.
+        mission: what is flown.
+        total: flights of the campaign.
+        there: flights that were made before.
+    """
+    begun, told, done, good = time.monotonic(), time.monotonic(), 0, 0
+
+    def words() -> str:
+        rate = done / max(time.monotonic() - begun, 1e-9)
+        left = (total - there - done) / rate if rate else 0.0
+        return f"{there + done} of {total} flown, {good} of {done} succeed, {rate:.3g} per s, {_duration(left)} left"
+
+    def count(success: bool) -> None:
+        nonlocal done, good
+        done, good = done + 1, good + success
+
+    if console.is_terminal:
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TaskProgressColumn(),
+            TextColumn("{task.fields[words]}"),
+        )
+        with Progress(*columns, console=console, transient=True) as bar:
+            task = bar.add_task(mission, total=total, completed=there, words="starting")
+
+            def advance(success: bool) -> None:
+                count(success)
+                bar.update(task, advance=1, words=words().partition(", ")[2])
+
+            yield advance
+        return
+
+    def tell(success: bool) -> None:
+        nonlocal told
+        count(success)
+        if time.monotonic() - told > TELL_S or there + done == total:
+            told = time.monotonic()
+            console.print(words(), highlight=False)
+
+    yield tell
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"

@@ -238,7 +238,7 @@ def load(name: str, given: dict[str, Any]) -> "Scenario":
 
     Args:
         name: file, or name of one that comes with armland.
-        given: options of `MADE`, and `DEVIATION` and those of wind and sea where the command has them.
+        given: options of `MADE`, and `DEVIATION` and those of wind and sea where the command has them; nested `overrides`.
 
     Raises:
         ConfigurationError: all that is wrong with it.
@@ -268,5 +268,19 @@ def load(name: str, given: dict[str, Any]) -> "Scenario":
 
         update(overrides, {"airframe": str(find_airframe(given["uav"]))})
     update(overrides, parse_settings(given.get("settings") or []))
+    update(overrides, given.get("overrides") or {})
     loaded = load_scenario(name, overrides)
     return loaded if seed is None else loaded.with_seed(seed)
+
+
+def load_flown(mission: str, name: str, given: dict[str, Any]) -> "Scenario":
+    """The scenario `name` as it is flown where a mission is asked for: what flies freely deviates as sources say, unless the user says
+    otherwise; arguments and errors as for `load`."""
+    from armland.mission.registry import mission_named
+
+    hinged = mission_named(mission).start == "hinged"
+    loaded = load(name, given)
+    if not hinged and "deviation.level" not in loaded.own:
+        # A demonstrator differs from what is believed of it. The log says so.
+        loaded = load(name, {**given, "deviation": "published"})
+    return loaded

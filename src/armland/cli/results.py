@@ -95,7 +95,7 @@ class Results:
     def __exit__(self, kind: type[BaseException] | None, *_: BaseException | TracebackType | None) -> None:
         if kind is None or issubclass(kind, SystemExit):
             self.keep()
-        elif any(self.folder.glob("*.mcap*")):
+        elif self._worth():
             self._set_aside()
             return
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -134,10 +134,14 @@ class Results:
                     path.unlink()
         self._kept = True
 
+    def _worth(self) -> list[Path]:
+        # Of a run that came to no result logs and stores are worth keeping, whole or not.
+        return [p for pattern in ("*.mcap*", "*.sqlite*") for p in self.folder.glob(pattern)]
+
     def _set_aside(self) -> None:
-        # Only the log of a run that came to no result is worth keeping.
+        worth = self._worth()
         for path in self.folder.iterdir():
-            if path.is_file() and ".mcap" not in path.suffixes:
+            if path.is_file() and path not in worth:
                 path.unlink()
         shutil.rmtree(self.folder / "scratch", ignore_errors=True)
         place = self.out / UNFINISHED

@@ -177,6 +177,28 @@ class Scenario(Section):
         """
         return self.replaced({"run": {"seed": seed}})
 
+    def frozen(self) -> str:
+        """The scenario as JSON, with what is known of where its values come from: `thawed` makes the same of it anywhere."""
+        own = {name: sorted(getattr(self, name)) for name in ("_own", "_asked", "_changed")}
+        texts = {"_text": self._text, "_overrides": self._overrides, "_sized": self._sized}
+        return json.dumps({"values": json.loads(self.model_dump_json()), **own, **texts}, sort_keys=True)
+
+    @staticmethod
+    def thawed(text: str) -> "Scenario":
+        """The scenario of which `frozen` made the `text`.
+
+        Raises:
+            ConfigurationError: the values are none of a scenario, as those of another version of armland may be.
+        """
+        data = json.loads(text)
+        try:
+            out = Scenario.model_validate_json(json.dumps(data.pop("values")))
+        except ValidationError as e:
+            raise refusal(e, Scenario, "the scenario as it was kept") from e
+        for name, value in data.items():
+            setattr(out, name, frozenset(value) if isinstance(value, list) else value)
+        return out
+
     def believed(self) -> "Scenario":
         """What the controller takes for true: the hardware as `belief` has it, and nothing that only the plant has."""
         return self._with(Scenario.model_validate_json(self._belief()))

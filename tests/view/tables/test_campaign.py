@@ -2,7 +2,7 @@
 
 import pytest
 
-from armland.experiments.campaign import summarise
+from armland.experiments.campaign.summary import summarise
 from armland.view.tables.campaign import print_campaign
 
 BOUNDS = {"touchdown.speed_mps": 0.15, "hinge_force_max_n": 106.0}

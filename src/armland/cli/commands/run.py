@@ -1,5 +1,6 @@
 """The commands that fly a mission: `run`, and `land` and `takeoff`, which are names for it."""
 
+import os
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -16,6 +17,8 @@ from armland.cli.results import Results, Work, publish
 if TYPE_CHECKING:
     from armland.experiments.episode import Flight
     from armland.runtime.log import Log
+
+STORE = "campaign.sqlite"
 
 _EPILOG = """**Examples**
 
@@ -106,10 +109,7 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
 
     hinged = mission_named(mission).start == "hinged"
     name = given["scenario"] or ("paper" if hinged else "landing")
-    loaded = options.load(name, given)
-    if not hinged and "deviation.level" not in loaded.own:
-        # What all sources give, unless the user says otherwise: a demonstrator differs from what is believed of it. The log says so.
-        loaded = options.load(name, {**given, "deviation": "published"})
+    loaded = options.load_flown(mission, name, given)
     tell_arm(loaded, diagnostics())
     tell_uav(loaded, diagnostics())
     console = ready(joints_of(loaded))
@@ -165,7 +165,12 @@ def _film(log: "Log", folder: Path, console: Console) -> None:
 
 
 def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> NoReturn:
-    from armland.experiments.campaign import campaign, summarise
+    from armland.experiments.campaign.crews import threads
+    from armland.experiments.campaign.description import Description
+    from armland.experiments.campaign.engine import Campaign, conduct
+    from armland.experiments.campaign.rows import Job
+    from armland.experiments.campaign.store import Store
+    from armland.experiments.campaign.summary import summarise
     from armland.experiments.judge.figures import bounds
     from armland.view.figures.campaign import draw_campaign
     from armland.view.page.sheet import write_page
@@ -173,13 +178,16 @@ def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Co
     from armland.view.tables.campaign import print_campaign
 
     first, seeds, limits = flight.scenario.run.seed, given["seeds"], bounds(flight.brief)
-    how = {"law": given["law"], "experiment": given.get("experiment"), "jobs": given["jobs"]}
+    job = Job(flight.scenario.frozen(), mission, given["law"], given.get("experiment"))
+    campaign = Campaign(Description(mission=mission, first_seed=first), job, seeds, limits)
 
-    def work(_: Results) -> Work:
-        with flights_told(console, mission, seeds) as tell:
-            rows = campaign(
-                flight.scenario, mission, range(first, first + seeds), **how, done=lambda row: tell(row["success"])
-            )
+    def work(results: Results) -> Work:
+        with (
+            Store(results.folder / STORE, write=True) as store,
+            flights_told(console, mission, seeds) as tell,
+        ):
+            conduct(campaign, store, threads(given["jobs"] or os.cpu_count() or 1), told=lambda row: tell(row.success))
+            rows = [row.judged() for row in store.rows()]
         summary = summarise(rows, limits)
         return Work(
             summary.successes == seeds,
@@ -189,4 +197,4 @@ def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Co
             lambda folder: write_page(folder, campaign_sheet(summary, rows, limits, flight)),
         )
 
-    publish(given, "campaign.json", (f"{mission}_campaign.p??", "report.html"), work)
+    publish(given, "campaign.json", (f"{mission}_campaign.p??", "report.html", STORE), work)

@@ -6,8 +6,8 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Any, TypeVar
 
 from armland.errors import ConfigurationError
-from armland.experiments.campaign import FIGURES, value
-from armland.experiments.campaign import Row as Result
+from armland.experiments.campaign.summary import FIGURES, value
+from armland.experiments.campaign.summary import Row as Result
 from armland.experiments.episode import fly
 from armland.scenario import Scenario
 

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from armland.experiments.campaign import FIGURES, Row, value
+from armland.experiments.campaign.summary import FIGURES, Row, value
 from armland.view.figures.canvas import PAGE_IN, drawn, sheet
 
 DOT: dict[str, Any] = {

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.text import Text
 
-from armland.experiments.campaign import Row, Spread, Summary
+from armland.experiments.campaign.summary import Row, Spread, Summary
 from armland.view.tables.verdicts import mark, terminal, titled
 
 _NUMBER = re.compile(r"\d+(\.\d+)?")

@@ -1,62 +1,10 @@
-"""Many episodes over the threads of one process: how many succeed, and the spread of each figure beside its bound.
+"""Many flights in a few numbers: how many succeed, and the spread of each figure beside its bound."""
 
-The compiled loop releases Python's lock, and code is loaded once.
-"""
-
-import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from armland.errors import ConfigurationError
-from armland.experiments.episode import attempt, prepare
-from armland.mission.plan import Plan
-from armland.scenario import Scenario
-
-
-def campaign(
-    scenario: Scenario,
-    mission: str,
-    seeds: Iterable[int],
-    *,
-    law: str | None = None,
-    experiment: str | None = None,
-    jobs: int | None = None,
-    done: Callable[[dict[str, Any]], None] | None = None,
-) -> list[dict[str, Any]]:
-    """Fly many seeds; the results in the order of the seeds. A flight that breaks is a row too, with its error as reason.
-
-    Args:
-        scenario: of all flights.
-        mission: name of the mission.
-        seeds: which; the same seed gives the same row, alone or in a campaign.
-        law: row of the law table instead of the mission's own.
-        experiment: row of the scenario's experiments, for missions that fly one.
-        jobs: threads; as many as there are cores if absent.
-        done: called with each row, in the order of the seeds.
-    """
-    rows, known = [], _common(scenario, mission, law, experiment)
-    with ThreadPoolExecutor(jobs or os.cpu_count() or 1, "episode") as pool:
-        more = {"law": law, "experiment": experiment, "known": known}
-        flights = [pool.submit(attempt, scenario, mission, seed, **more) for seed in seeds]
-        for flight in flights:
-            rows.append(flight.result())
-            if done is not None:
-                done(rows[-1])
-    return rows
-
-
-def _common(scenario: Scenario, mission: str, law: str | None, experiment: str | None) -> Plan | None:
-    # The plan of all flights; none where each has to find its own place, or to say itself what speaks against it.
-    try:
-        flight = prepare(scenario, mission, law=law, experiment=experiment)
-    except ConfigurationError:
-        return None
-    return None if flight.moved else flight.plan
-
 
 Row = dict[str, Any]  # The result of one episode, see `episode.Episode`
 
@@ -134,7 +82,7 @@ def summarise(rows: Sequence[Row], bounds: Mapping[str, float]) -> Summary:
     """Summary of at least one row; figures that no flight has are left out.
 
     Args:
-        rows: of `campaign`.
+        rows: of `engine.campaign`.
         bounds: largest allowed value of figures of `FIGURES`, SI units, see `judge.figures.bounds`.
     """
     # Imported here: it takes a second, which a single flight does not pay.

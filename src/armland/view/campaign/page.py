@@ -1,0 +1,33 @@
+"""A campaign's report as one HTML page that needs nothing beside it: no network, no script, no other file."""
+
+from importlib.resources import files
+from pathlib import Path
+
+from jinja2 import Environment, StrictUndefined
+
+from armland.experiments.campaign.report import QUANTILES, Report, short
+from armland.experiments.campaign.table import Table
+from armland.experiments.margins.flights import shortened
+from armland.view.campaign.pictures import as_source, pictures
+from armland.view.campaign.terminal import fails_with, headline, interval_of, percent
+
+MOST_POINTS = 500
+
+
+def page(report: Report, table: Table, store: Path) -> str:
+    """The page as text; `store` is named in the commands that fly the worst flights again."""
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters |= {"percent": percent, "short": lambda x: f"{x:.3g}", "value": short, "brief": shortened}
+    template = environment.from_string((files("armland") / "view" / "campaign" / "page.html").read_text("utf-8"))
+    return template.render(
+        report=report,
+        headline=headline(report),
+        store=store,
+        quantiles=[f"{100.0 * q:g} %" for q in QUANTILES],
+        points=report.points[:MOST_POINTS],
+        names={p.point: p.name for p in report.points},
+        interval=lambda point: interval_of(report, point),
+        fails_with=fails_with,
+        pictures={caption: as_source(svg) for caption, svg in pictures(report, table).items()},
+        description=report.campaign.about()["description"],
+    )
