@@ -29,6 +29,7 @@ LAYERS = (
     ("experiments",),
     ("vision",),
     ("view",),
+    ("console",),
     ("cli",),
 )
 FOUNDATION = {"__init__", "errors", "rotations", "records", "native", "linking", "compiled", "scenario"}
