@@ -15,7 +15,7 @@ from armland.cli.commands.reach import reach
 from armland.cli.commands.run import land, run, takeoff
 from armland.cli.commands.studies import envelope, takeoff_weight, verify
 from armland.cli.commands.uav import uav
-from armland.cli.commands.watch import replay
+from armland.cli.commands.watch import console, replay
 
 app = typer.Typer(
     name="armland",
@@ -47,6 +47,7 @@ for command in (
     takeoff,
     run,
     paper,
+    console,
     replay,
     report,
     log,

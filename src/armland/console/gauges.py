@@ -65,7 +65,7 @@ def bars_html(bars: Sequence[Bar]) -> str:
             f'<span style="display:block;height:8px;width:{100 * used:.0f}%;background:{color}"></span></span>'
             f'<span style="width:128px;font-size:11px;white-space:nowrap">{escape(bar.words)}</span></div>'
         )
-    return f'<div style="{BLOCK}">{"".join(rows)}</div>'
+    return f'<div style="{BLOCK};padding-bottom:8px">{"".join(rows)}</div>'
 
 
 def shares_html(rotors: float, arm: float, cradle: float) -> str:
@@ -92,7 +92,7 @@ def strip_html(names: Sequence[str], flown: Sequence[int], now: int) -> str:
         last = i == len(flown) - 1 and phase == now
         look = "background:#0072B2;color:#fff;font-weight:600" if last else "background:#8883"
         cells.append(f'<span style="padding:1px 6px;border-radius:8px;{look}">{escape(name.replace("_", " "))}</span>')
-    return f'<div style="{BLOCK};display:flex;flex-wrap:wrap;gap:3px" data-phase="{escape(_name(names, now))}">{"".join(cells)}</div>'
+    return f'<div style="{BLOCK};padding-bottom:6px;display:flex;flex-wrap:wrap;gap:3px" data-phase="{escape(_name(names, now))}">{"".join(cells)}</div>'
 
 
 def lines_html(lines: Sequence[str], warning: bool = False) -> str:

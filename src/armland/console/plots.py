@@ -55,8 +55,8 @@ PANELS = (
     ),
     Panel("hinge force (N)", {"force": _norm("truth", "hinge_force")}),
     Panel("who carries the weight (N)", {"rotors": _force(0), "arm": _force(1), "cradle": _force(2)}),
-    Panel("V₂ (J)", {"V₂": lambda t: t["proof"]["v2"]}),
-    Panel("rate of V₂ (W)", {"promised": lambda t: t["proof"]["v2_rate"]}),
+    Panel("V₂ (J); 0: no law of it at work", {"V₂": lambda t: np.nan_to_num(t["proof"]["v2"])}),
+    Panel("rate of V₂ (W)", {"promised": lambda t: np.nan_to_num(t["proof"]["v2_rate"])}),
     Panel("largest joint torque over its limit (1)", {"torque": lambda t: t["health"]["torque_ratio"]}),
     Panel("age of the UAV's sample (ms)", {"link": lambda t: 1e3 * t["health"]["uav_age"]}),
 )
@@ -149,7 +149,7 @@ class Charts:
             {"label": "s"},
             *({"label": "phase", **ground, "fill": fill} for fill in GROUNDS),
             {"label": "action", **ground, "fill": ACTION},
-            {"label": "now", **ground, "width": 1, "stroke": NOW, "fill": NOW},
+            {"label": "now", **ground, "fill": NOW},
         ]
         lines: list[dict[str, Any]] = []
         for flight, name in enumerate(names):

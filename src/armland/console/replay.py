@@ -147,8 +147,8 @@ class Replay:
         self._window.on_update(lambda _: self.go_to(self.time))
         for label, key, act in (
             ("play or pause", "space", lambda _: self._play(not self.playing)),
-            ("a tenth of a second back", "arrowleft", lambda _: self.go_to(self.time - 0.1)),
-            ("a tenth of a second on", "arrowright", lambda _: self.go_to(self.time + 0.1)),
+            ("a tenth of a second back", "J", lambda _: self.go_to(self.time - 0.1)),
+            ("a tenth of a second on", "K", lambda _: self.go_to(self.time + 0.1)),
         ):
             gui.add_command(label, hotkey=key).on_trigger(act)
 
@@ -210,9 +210,7 @@ class Replay:
 
 
 def _beside(first: Recording, second: Recording) -> Curves:
-    """The curves of the second flight at the times of the first; not a number where it was over."""
+    """The curves of the second flight at the times of the first; where it was over, as it ended: a chart knows no gaps."""
     time, own = first.curves.time, second.curves
-    lines = tuple(
-        tuple(np.interp(time, own.time, line, left=np.nan, right=np.nan) for line in panel) for panel in own.lines
-    )
+    lines = tuple(tuple(np.interp(time, own.time, line) for line in panel) for panel in own.lines)
     return Curves(time, first.curves.phase, first.curves.fault, lines)

@@ -1,5 +1,6 @@
 """The commands that open a page in the browser: `replay` of recorded flights, and the `console` of a live one."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,19 @@ REPLAY_EPILOG = """**Examples**
 Exit code: 0 when it is stopped by Ctrl-C, 2 for a log that cannot be read or a port in use.
 """
 
+CONSOLE_EPILOG = """**Examples**
+
+`armland console` opens a page on which a landing is started, watched and steered: space holds, escape aborts.
+
+`armland console takeoff --seed 7` begins with a take-off of that seed.
+
+`armland console --uav x500 --wind 4` begins with another UAV, in wind; all can be chosen anew in the page.
+
+`armland console --host 0.0.0.0` serves other machines too, and prints an address with the token that pages have to know.
+
+Exit code: 0 when it is stopped by Ctrl-C, 2 for bad input or a port in use.
+"""
+
 SERVED = {
     "host": options.option(
         str, "Address to serve on; any but this machine's own asks pages for a token.", default="127.0.0.1"
@@ -28,6 +42,56 @@ SERVED = {
     "browser": options.option(bool, "Open the page in the browser.", "--browser/--no-browser", default=True),
 }
 """Options that say where a page is served."""
+
+
+@options.taken(
+    CONSOLE_EPILOG,
+    mission=options.argument(str, "Mission that is chosen at first.", "landing"),
+    scenario=options.option(str | None, f"{options.SCENARIO_HELP} The mission's own if absent.", metavar="SCENARIO"),
+    law=options.LAW,
+    wind=options.FLOWN["wind"],
+    sea=options.FLOWN["sea"],
+    **options.MADE,
+    out=options.option(Path, "Folder for the logs; out/console if absent.", default=Path("out") / "console"),
+    **SERVED,
+)
+def console(**given: Any) -> None:
+    """Watch and steer a live flight in the browser: start, hold, abort, wind, sea, faults thrown in by hand."""
+    from armland.cli.commands.arm import joints_of
+    from armland.cli.commands.run import loaded_for
+    from armland.cli.console import ready
+    from armland.console.live.choices import Choices, chosen
+    from armland.console.live.console import Console
+    from armland.console.live.pilot import Pilot
+    from armland.experiments.episode import Flight, prepare
+    from armland.mission.registry import mission_named
+
+    hinged = mission_named(given["mission"]).start == "hinged"
+    named = {name: given[name] or "" for name in ("arm", "ee", "uav", "law", "sea")}
+    own = given["scenario"] or ("paper" if hinged else "landing")
+    numbers = {"seed": 1 if given["seed"] is None else given["seed"], "wind": given["wind"] or 0.0}
+    first = chosen({"mission": given["mission"], "scenario": own, **named, **numbers})
+    settings = tuple(given["settings"] or ())
+
+    def prepared(choices: Choices) -> Flight:
+        options_of = {**given, **choices.given(settings)}
+        scenario = loaded_for(choices.mission, options_of)
+        ready(joints_of(scenario))
+        return prepare(scenario, choices.mission, law=options_of["law"])
+
+    # What is wrong with the first choice is told before there is a page.
+    ready(joints_of(loaded_for(first.mission, {**given, **first.given(settings)})))
+    said: list[Any] = []
+    pilot = Pilot(prepared, given["out"], lambda words: said[0].say(words) if said else None)
+    server = _serve(given, "armland console", lambda words: said[0].say(words) if said else None)
+    said.append(Console(server, pilot, first, settings))
+    try:
+        said[0].run()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        pilot.close()
+        server.stop()
 
 
 @options.taken(
@@ -56,11 +120,11 @@ def replay(**given: Any) -> None:
         server.stop()
 
 
-def _serve(given: dict[str, Any], title: str) -> Any:
+def _serve(given: dict[str, Any], title: str, refused: Callable[[str], None] | None = None) -> Any:
     from armland.console.page.door import token_for
     from armland.console.page.server import PageServer
 
-    server = PageServer(given["host"], given["port"], token_for(given["host"], given["token"]), title)
+    server = PageServer(given["host"], given["port"], token_for(given["host"], given["token"]), title, refused)
     print(f"{title}: {server.address}  (Ctrl-C ends it)", flush=True)
     if given["browser"]:
         import webbrowser

@@ -17,7 +17,7 @@ def look(server: viser.ViserServer) -> None:
     server.gui.main_panel.set_width(430)
     switch = server.gui.add_checkbox("dark", initial_value=False)
     switch.on_update(lambda event: _theme(server, dark=event.target.value))
-    server.gui.add_command("light or dark", hotkey="D").on_trigger(lambda _: _toggle(switch))
+    server.gui.add_command("light or dark", hotkey="L").on_trigger(lambda _: _toggle(switch))
 
 
 def _toggle(switch: Any) -> None:

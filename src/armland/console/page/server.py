@@ -56,6 +56,7 @@ class PageServer:
         if port and self.viser.get_port() != port:
             self.stop()
             raise in_use(host, port)
+        self.viser.on_client_connect(self._greet)
         shown = "localhost" if host in ("127.0.0.1", "0.0.0.0", "::") else host
         query = "" if token is None else f"/?token={token}"
         self.address = f"http://{shown}:{self.viser.get_port()}{query}"
@@ -96,6 +97,10 @@ class PageServer:
             yield
         finally:
             socket_server.serve = original  # type: ignore[misc]
+
+    def _greet(self, client: viser.ClientHandle) -> None:
+        if len(self._pages) > 1:
+            client.add_notification("Read-only", "Another page steers; this one watches.", auto_close_seconds=10.0)
 
     async def _watch(
         self, connection: ServerConnection, handler: Callable[[ServerConnection], Awaitable[None]]

@@ -29,7 +29,7 @@ from armland.scenario.sensing import Camera
 WEIGHT_M, WIND_M = 0.25, 0.08
 """Lengths of the arrows, m."""
 
-SHORTEST_M = 0.01
+SHORTEST_M = 0.04
 """Length of an arrow that is worth to be seen, m."""
 
 SEA_M = -1.0
@@ -166,8 +166,8 @@ class Stage:
             size,
             cell_size=0.25,
             section_size=1.0,
-            cell_color=(205, 208, 213),
-            section_color=(160, 165, 172),
+            cell_color=(165, 170, 176),
+            section_color=(125, 130, 138),
             plane_color=(150, 156, 164),
             plane_opacity=0.35 if scene.deck_qpos >= 0 else 0.0,
         )

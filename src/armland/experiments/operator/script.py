@@ -5,10 +5,12 @@ from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 from pydantic import ValidationError
 
 from armland.errors import LogError
 from armland.experiments.operator.message import Message
+from armland.records import Records
 from armland.scenario.refusal import problems
 
 SCRIPT_NAME = "operator.jsonl"
@@ -57,6 +59,18 @@ def script_of(attachments: Mapping[str, bytes]) -> tuple[Message, ...]:
         return messages_of(data.decode(), SCRIPT_NAME)
     except UnicodeDecodeError as e:
         raise LogError(f"{SCRIPT_NAME}: no text: {e}") from e
+
+
+def first_difference(ticks: Records, other: Records) -> int | None:
+    """The first tick in which two records (k,) of `records.tick_layout` differ in a bit or in length; None where they are the same."""
+    if ticks.dtype != other.dtype:
+        return 0
+    count = min(len(ticks), len(other))
+    rows, others = (a[:count].view(np.uint8).reshape(count, -1) for a in (ticks, other))
+    differs = np.flatnonzero((rows != others).any(axis=1))
+    if len(differs):
+        return int(differs[0])
+    return None if len(ticks) == len(other) else count
 
 
 def read_script(file: Path) -> tuple[Message, ...]:
