@@ -88,11 +88,12 @@ def strip_html(names: Sequence[str], flown: Sequence[int], now: int) -> str:
     """The phases that were flown, in their order, and the one in progress."""
     cells = []
     for i, phase in enumerate(flown):
-        name = names[phase] if 0 <= phase < len(names) else str(phase)
         last = i == len(flown) - 1 and phase == now
         look = "background:#0072B2;color:#fff;font-weight:600" if last else "background:#8883"
-        cells.append(f'<span style="padding:1px 6px;border-radius:8px;{look}">{escape(name.replace("_", " "))}</span>')
-    return f'<div style="{BLOCK};padding-bottom:6px;display:flex;flex-wrap:wrap;gap:3px" data-phase="{escape(_name(names, now))}">{"".join(cells)}</div>'
+        words = escape(name_of(names, phase).replace("_", " "))
+        cells.append(f'<span style="padding:1px 6px;border-radius:8px;{look}">{words}</span>')
+    style = f"{BLOCK};padding-bottom:6px;display:flex;flex-wrap:wrap;gap:3px"
+    return f'<div style="{style}" data-phase="{escape(name_of(names, now))}">{"".join(cells)}</div>'
 
 
 def lines_html(lines: Sequence[str], warning: bool = False) -> str:
@@ -114,5 +115,6 @@ def runs_of(phases: NDArray[np.int64]) -> list[int]:
     return [int(phases[0]), *(int(p) for p in phases[1:][np.diff(phases) != 0])]
 
 
-def _name(names: Sequence[str], number: int) -> str:
-    return names[number] if 0 <= number < len(names) else str(number)
+def name_of(names: Sequence[str], number: int) -> str:
+    """The name of that number, or the number where it has none."""
+    return names[number] if 0 <= number < len(names) else f"number {number}"

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from armland.console.gauges import name_of
 from armland.console.plots import Curves, curves_of, thin
 from armland.console.stage.poses import scene_of
 from armland.errors import LogError
@@ -75,6 +76,14 @@ class Recording:
         """Time of the last tick, s."""
         return float(self.ticks["measurement"]["tick"][-1] * self.period_s)
 
+    @property
+    def weight(self) -> float:
+        """Of all that flies, N; not a number where the log does not say."""
+        try:
+            return float(self.log.metadata["weight"])
+        except (LookupError, ValueError):
+            return float("nan")
+
     def at(self, time: float) -> Records:
         """The tick at a time, s, or the nearest."""
         return self.ticks[int(np.clip(round((time - self.begin) / self.period_s), 0, len(self.ticks) - 1))]
@@ -88,7 +97,7 @@ class Recording:
 
     def phase(self, tick: Records) -> str:
         """Name of the phase of a tick."""
-        return _named(self.phases, int(tick["mission"]["phase"]))
+        return name_of(self.phases, int(tick["mission"]["phase"]))
 
     def wind(self, time: float) -> Array | None:
         """Mean wind (3,), m/s, W, where the UAV is caught, as scenario and operator have it; None where none is known of."""
@@ -137,10 +146,10 @@ class Recording:
     def _events(self) -> list[Event]:
         mission, events = self.ticks["mission"], []
         for k in np.flatnonzero(np.diff(mission["phase"], prepend=-1)):
-            words = _named(self.phases, int(mission["phase"][k])).replace("_", " ")
+            words = name_of(self.phases, int(mission["phase"][k])).replace("_", " ")
             events.append(Event(self._time(k), "phase", words))
         for k in np.flatnonzero((np.diff(mission["fault"], prepend=0) != 0) & (mission["fault"] > 0)):
-            fault, end = _named(self.faults, int(mission["fault"][k])), _named(self.phases, int(mission["phase"][k]))
+            fault, end = name_of(self.faults, int(mission["fault"][k])), name_of(self.phases, int(mission["phase"][k]))
             events.append(Event(self._time(k), "supervisor", f"{fault} found, on to {end}"))
         events += [Event(m.tick * self.period_s, "operator", m.words()) for m in self.told]
         return sorted(events)
@@ -149,13 +158,9 @@ class Recording:
         return float(self.ticks["measurement"]["tick"][k] * self.period_s)
 
 
-def _named(names: tuple[str, ...], number: int) -> str:
-    return names[number] if 0 <= number < len(names) else f"number {number}"
-
-
 def threshold(metadata: dict[str, str], name: str) -> float:
     """A threshold of the mission that a log was flown by; 0 where it has none."""
     try:
-        return float(json.loads(metadata.get("thresholds", "{}")).get(name, 0.0))
-    except (TypeError, ValueError):
+        return float(json.loads(metadata["thresholds"])[name])
+    except (LookupError, TypeError, ValueError):
         return 0.0

@@ -17,7 +17,7 @@ from armland.console.gauges import (
     shares_html,
     strip_html,
 )
-from armland.console.page.look import look, plots_panel, put_camera
+from armland.console.page.look import in_order, look, plots_panel, put_camera
 from armland.console.page.server import PageServer
 from armland.console.plots import Charts, Curves, cut
 from armland.console.recording import Event, Recording, threshold
@@ -113,11 +113,10 @@ class Replay:
         for i, run in enumerate(self._runs):
             if run.scene is None:
                 continue
-            weight = float(run.log.metadata.get("weight", "nan"))
             camera = None if run.scenario is None or run.scene.bond != "free" else run.scenario.camera
             envelope = threshold(run.log.metadata, "align_offset_m")
             api = self._server.viser.scene
-            stage = Stage(api, run.scene, f"/flight_{i + 1}", weight, camera, envelope, ghost=i > 0)
+            stage = Stage(api, run.scene, f"/flight_{i + 1}", run.weight, camera, envelope, ghost=i > 0)
             self._stages.append((run, stage))
         if self._stages:
             put_camera(self._server.viser, np.array(self._stages[0][0].at(0.0)["truth"]["ee"]))
@@ -133,24 +132,26 @@ class Replay:
         self._slider = gui.add_slider(
             "time (s)", min=self._first.begin, max=self._first.end, step=0.001, initial_value=self._first.begin
         )
-        self._slider.on_update(lambda event: self.go_to(event.target.value) if event.client is not None else None)
+        self._slider.on_update(
+            in_order(lambda event: self.go_to(event.target.value) if event.client is not None else None)
+        )
         self._button = gui.add_button("Play")
-        self._button.on_click(lambda _: self._play(not self.playing))
+        self._button.on_click(in_order(lambda _: self._play(not self.playing)))
         speed = gui.add_dropdown("speed", SPEEDS, initial_value="1")
-        speed.on_update(lambda event: self._set_speed(event.target.value))
+        speed.on_update(in_order(lambda event: self._set_speed(event.target.value)))
         events = [f"{e.time:8.3f} s  {e.kind}: {e.words}" for e in self.events]
         jump = gui.add_dropdown("jump to", ["-", *dict.fromkeys(events)], initial_value="-")
-        jump.on_update(lambda event: self._jump(event.target.value))
+        jump.on_update(in_order(lambda event: self._jump(event.target.value)))
         steps = gui.add_button_group("event", ("previous", "next"))
-        steps.on_click(lambda event: self._step(1 if event.target.value == "next" else -1))
+        steps.on_click(in_order(lambda event: self._step(1 if event.target.value == "next" else -1)))
         self._window = gui.add_dropdown("plots show", (f"{WINDOW_S:g} s", WHOLE), initial_value=WHOLE)
-        self._window.on_update(lambda _: self.go_to(self.time))
+        self._window.on_update(in_order(lambda _: self.go_to(self.time)))
         for label, key, act in (
             ("play or pause", "space", lambda _: self._play(not self.playing)),
             ("a tenth of a second back", "J", lambda _: self.go_to(self.time - 0.1)),
             ("a tenth of a second on", "K", lambda _: self.go_to(self.time + 0.1)),
         ):
-            gui.add_command(label, hotkey=key).on_trigger(act)
+            gui.add_command(label, hotkey=key).on_trigger(in_order(act))
 
     def _set_speed(self, text: str) -> None:
         over, _, under = text.partition("/")

@@ -87,7 +87,6 @@ def test_left_out_each_message_is_missed(hand, steered, k: int) -> None:
 
 
 def test_a_loop_in_python_gives_the_same_bits(hand, steered) -> None:
-    episode, _, _ = steered
     one = hand([m.at(m.tick - 1500) for m in SCRIPT[:4] if m.tick - 1500 < 1200])
     two = hand(list(one._due))
     for port in (one, two):
@@ -114,7 +113,7 @@ def test_held_and_let_go_it_lands_all_the_same(hand) -> None:
     assert episode.result["success"], episode.result["reason"]
     at = phases(episode).index("held_by_operator")
     assert phases(episode)[at - 1 : at + 2] == ["carry", "held_by_operator", "carry"]
-    held = [p for p in episode.judgement.phases if p.name == "held_by_operator"][0]
+    held = next(p for p in episode.judgement.phases if p.name == "held_by_operator")
     assert (held.start_s, held.end_s) == (8.0, 9.5)
     # The arm rests, the UAV hangs on it.
     v = np.linalg.norm(episode.ticks["truth"]["ee_v"][8600:9500], axis=1)

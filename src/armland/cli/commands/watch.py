@@ -63,6 +63,7 @@ def console(**given: Any) -> None:
     from armland.console.live.choices import Choices, chosen
     from armland.console.live.console import Console
     from armland.console.live.pilot import Pilot
+    from armland.console.page.server import check_port
     from armland.experiments.episode import Flight, prepare
     from armland.mission.registry import mission_named
 
@@ -79,6 +80,7 @@ def console(**given: Any) -> None:
         ready(joints_of(scenario))
         return prepare(scenario, choices.mission, law=options_of["law"])
 
+    check_port(given["host"], given["port"])
     # What is wrong with the first choice is told before there is a page.
     ready(joints_of(loaded_for(first.mission, {**given, **first.given(settings)})))
     said: list[Any] = []

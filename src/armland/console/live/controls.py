@@ -12,6 +12,7 @@ from armland.console.live.choices import OWN, SEAS, Choices, chosen
 from armland.console.live.forecast import AT_ONCE, failure
 from armland.console.live.pace import FACTORS, FASTEST
 from armland.console.live.pilot import Pilot
+from armland.console.page.look import in_order
 from armland.control.laws.table import LAWS
 from armland.errors import ArmlandError, ConfigurationError
 from armland.experiments.operator.message import Message, asked
@@ -103,13 +104,13 @@ class Controls:
     def _build_buttons(self) -> None:
         gui = self._gui
         run = gui.add_button_group("flight", ("start", "hold", "go on", "abort"))
-        run.on_click(lambda event: self._press(event.target.value))
+        run.on_click(in_order(lambda event: self._press(event.target.value)))
         again = gui.add_button_group("seed", ("retry", "next seed"))
-        again.on_click(lambda event: self._press(event.target.value))
+        again.on_click(in_order(lambda event: self._press(event.target.value)))
         clock = gui.add_button_group("time", ("pause", "run", "1 tick", "10 ticks"))
-        clock.on_click(lambda event: self._press(event.target.value))
+        clock.on_click(in_order(lambda event: self._press(event.target.value)))
         speed = gui.add_dropdown("times real time", (*FACTORS, FASTEST), initial_value="1")
-        speed.on_update(lambda event: self._pilot.pace.set(FACTORS.get(event.target.value)))
+        speed.on_update(in_order(lambda event: self._pilot.pace.set(FACTORS.get(event.target.value))))
 
     def _press(self, name: str) -> None:
         pace, seed = self._pilot.pace, int(self._choice["seed"].value)
@@ -155,7 +156,7 @@ class Controls:
         for verb, (label, low, high, step, rest) in SLIDERS.items():
             value = self._first.wind if verb == "wind" else rest
             slider = self._gui.add_slider(label, min=low, max=high, step=step, initial_value=min(value, high))
-            slider.on_update(partial(self._slide, verb))
+            slider.on_update(in_order(partial(self._slide, verb)))
             self._slider[verb] = slider
         self._gui.add_html(lines_html(["They act at once, and hold for the next flight; the log keeps each."]))
 
@@ -171,10 +172,10 @@ class Controls:
         self._fault = self._gui.add_dropdown("fault", tuple(PROVOKED), initial_value="uav_silent")
         self._phase = self._gui.add_dropdown("phase", (AT_ONCE,), initial_value=AT_ONCE)
         for control in (self._fault, self._phase):
-            control.on_update(lambda _: self.picked())
+            control.on_update(in_order(lambda _: self.picked()))
         self.forecast = self._gui.add_html("")
         """Where the page says what the supervisor will do."""
-        self._gui.add_button("throw it in").on_click(lambda _: self._throw())
+        self._gui.add_button("throw it in").on_click(in_order(lambda _: self._throw()))
         self.outcomes = self._gui.add_html("")
         """Where it says what he did."""
         self.table = self._gui.add_html("")
@@ -188,12 +189,12 @@ class Controls:
 
     def _build_keys(self) -> None:
         gui = self._gui
-        gui.add_command("hold, or go on", hotkey="space").on_trigger(lambda _: self._toggle_hold())
-        gui.add_command("abort", hotkey="escape").on_trigger(lambda _: self._tell("abort"))
-        gui.add_command("start", hotkey="enter").on_trigger(lambda _: self.start())
+        gui.add_command("hold, or go on", hotkey="space").on_trigger(in_order(lambda _: self._toggle_hold()))
+        gui.add_command("abort", hotkey="escape").on_trigger(in_order(lambda _: self._tell("abort")))
+        gui.add_command("start", hotkey="enter").on_trigger(in_order(lambda _: self.start()))
         pace = self._pilot.pace
-        gui.add_command("pause, or run", hotkey="P").on_trigger(lambda _: pace.pause(not pace.paused))
-        gui.add_command("one tick", hotkey="N").on_trigger(lambda _: self._press("1 tick"))
+        gui.add_command("pause, or run", hotkey="P").on_trigger(in_order(lambda _: pace.pause(not pace.paused)))
+        gui.add_command("one tick", hotkey="N").on_trigger(in_order(lambda _: self._press("1 tick")))
 
     def _toggle_hold(self) -> None:
         flight = self._pilot.flight

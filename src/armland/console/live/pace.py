@@ -36,6 +36,10 @@ class Pace:
         """Whether time stands still."""
         self._steps, self._due, self._woken = 0, time.perf_counter(), threading.Event()
 
+    def begin(self) -> None:
+        """Count from now on: what went before is not made up for."""
+        self._due = time.perf_counter()
+
     def set(self, factor: float | None) -> None:
         """Go at `factor` times real time, None for as fast as it can."""
         self.factor = 0.0 if factor is None else factor

@@ -76,6 +76,9 @@ class Steered(Hand):
         flown, broken = super().advance(controller, rows[:most])
         if flown:
             self._leave(controller, rows[:flown])
+        if self.tick <= 1:
+            # The first tick may have loaded what is compiled.
+            self.pace.begin()
         return flown, broken
 
     def _take(self) -> None:

@@ -9,6 +9,7 @@
 """
 
 import math
+import warnings
 from typing import Any
 
 from viser import (
@@ -37,7 +38,9 @@ def decoded(raw: Any) -> messages.Message | str:
         return "text in place of a message"
     try:
         # Whatever a parser makes of bytes that nobody has checked.
-        return messages.Message.deserialize(raw)  # type: ignore[return-value]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return messages.Message.deserialize(raw)  # type: ignore[return-value]
     except Exception as e:
         return f"{len(raw)} bytes that are no message ({type(e).__name__})"
 

@@ -1,5 +1,6 @@
 """How every page looks: light or dark, the panel at the side, where the camera stands."""
 
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,20 @@ def look(server: viser.ViserServer) -> None:
     server.gui.main_panel.dock_right()
     server.gui.main_panel.set_width(430)
     switch = server.gui.add_checkbox("dark", initial_value=False)
-    switch.on_update(lambda event: _theme(server, dark=event.target.value))
-    server.gui.add_command("light or dark", hotkey="L").on_trigger(lambda _: _toggle(switch))
+    switch.on_update(in_order(lambda event: _theme(server, dark=event.target.value)))
+    server.gui.add_command("light or dark", hotkey="L").on_trigger(in_order(lambda _: _toggle(switch)))
+
+
+def in_order(act: Callable[[Any], object]) -> Callable[[Any], Coroutine[Any, Any, None]]:
+    """Let `act` take each event as it comes, with the value that it came with: in viser's pool of threads a later one may overtake it.
+
+    It must not wait for anything.
+    """
+
+    async def take(event: Any) -> None:
+        act(event)
+
+    return take
 
 
 def _toggle(switch: Any) -> None:
