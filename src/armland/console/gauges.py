@@ -15,7 +15,7 @@ GOOD, NEAR, OVER = "#009E73", "#E69F00", "#D55E00"
 NEAR_END_RAD = 0.02
 """Distance to a joint's end at which the supervisor brakes, unless a scenario says otherwise."""
 
-BLOCK = "font-size:12px;line-height:1.45;padding:2px 10px"
+BLOCK = "font-size:12px;line-height:1.45;padding:2px 10px 5px"
 
 
 class Bar(NamedTuple):
@@ -47,7 +47,7 @@ def bars_of(tick: Records, limits: Mapping[str, Any], link_s: float) -> list[Bar
         force, bound = float(np.linalg.norm(tick["truth"]["hinge_force"])), float(np.max(limits["hinge_max"]))
         bars.append(Bar("hinge force", force / bound, f"{force:.1f} N, at most {bound:.0f} N"))
     margin = float(health["joint_margin"])
-    bars.append(Bar("joint range", NEAR_END_RAD / max(margin, 1e-9), f"{margin:.2f} rad to the nearest end"))
+    bars.append(Bar("joint range", NEAR_END_RAD / max(margin, 1e-9), f"{margin:.2f} rad to an end"))
     age = float(health["uav_age"])
     bars.append(Bar("link", age / link_s, f"{1e3 * age:.0f} ms, at most {1e3 * link_s:.0f} ms"))
     return bars
@@ -65,7 +65,7 @@ def bars_html(bars: Sequence[Bar]) -> str:
             f'<span style="display:block;height:8px;width:{100 * used:.0f}%;background:{color}"></span></span>'
             f'<span style="width:128px;font-size:11px;white-space:nowrap">{escape(bar.words)}</span></div>'
         )
-    return f'<div style="{BLOCK};padding-bottom:8px">{"".join(rows)}</div>'
+    return f'<div style="{BLOCK}">{"".join(rows)}</div>'
 
 
 def shares_html(rotors: float, arm: float, cradle: float) -> str:
@@ -92,7 +92,7 @@ def strip_html(names: Sequence[str], flown: Sequence[int], now: int) -> str:
         look = "background:#0072B2;color:#fff;font-weight:600" if last else "background:#8883"
         words = escape(name_of(names, phase).replace("_", " "))
         cells.append(f'<span style="padding:1px 6px;border-radius:8px;{look}">{words}</span>')
-    style = f"{BLOCK};padding-bottom:6px;display:flex;flex-wrap:wrap;gap:3px"
+    style = f"{BLOCK};display:flex;flex-wrap:wrap;gap:3px"
     return f'<div style="{style}" data-phase="{escape(name_of(names, now))}">{"".join(cells)}</div>'
 
 

@@ -161,14 +161,14 @@ class Charts:
         gui.add_html(_title(panel.title, lines))
         series += lines
         axis: dict[str, Any] = {"font": "10px sans-serif", "stroke": AXIS, "grid": {"stroke": f"{AXIS}55", "width": 1}}
-        axes: Any = ({"size": 22, **axis}, {"size": 46, **axis})
+        axes: Any = ({"size": 28, **axis}, {"size": 46, **axis})
         return gui.add_uplot(
             tuple(np.zeros(2) for _ in series),
             tuple(series),  # type: ignore[arg-type]
             scales={"x": {"time": False}, "ground": {"auto": False, "range": (0.0, 1.0)}},
             axes=axes,
             legend={"show": False},
-            height=118,
+            height=124,
         )
 
 

@@ -183,8 +183,10 @@ class Replay:
         run = self._first
         tick = run.at(self.time)
         k = int(np.searchsorted(run.curves.time, self.time))
-        flown = runs_of(run.curves.phase[: max(k, 1)])
-        self._strip.content = strip_html(run.phases, flown, int(tick["mission"]["phase"]))
+        phase = tick["mission"]["phase"]
+        # Thinned, a phase shows a moment after its begin.
+        flown = runs_of(np.append(run.curves.phase[:k], phase))
+        self._strip.content = strip_html(run.phases, flown, int(phase))
         self._status.content = self._status_html(run)
         curves, other = run.curves, self._other
         if self._window.value != WHOLE:

@@ -76,7 +76,7 @@ def _update(message: messages.GuiUpdateMessage, gui: GuiApi, steers: bool) -> st
     if not steers:
         return READ_ONLY
     value = message.updates["value"]
-    return None if _possible(handle, value) else f"{str(value)[:40]!r}, which this control cannot have"
+    return None if _possible(handle, value) else f"{str(value)[:40]}, which this control cannot have"
 
 
 def _possible(handle: Any, value: Any) -> bool:
