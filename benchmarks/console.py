@@ -1,14 +1,14 @@
 """What a console costs the loop, and whether pages that come, hang and go at random disturb it.
 
-Run: .venv/bin/python benchmarks/console.py [ROUNDS [SECONDS]]
+Run: .venv/bin/python benchmarks/console.py [SECONDS [SECONDS]]
 
-Cost: landings as fast as they go, in one process, in turn without a console and with one that shows them to a page at 30 Hz.
+Cost: landings as fast as they go, in one process, for half a second each without a console and with one that shows them to a page
+at 30 Hz. On a machine that does other things as well its best quarter of blocks says more than their middle.
 Pages: for SECONDS at real time five pages, in a process of their own, open, read or hang, send nonsense, and close.
 """
 
 import random
 import resource
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 
 import msgspec
+import numpy as np
 import viser
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
@@ -28,6 +29,8 @@ from armland.console.page.server import PageServer
 from armland.experiments.episode import prepare
 from armland.runtime.log import read_log
 from armland.scenario import load_scenario
+
+SLICE_S = 0.5
 
 CAMERA = {
     "type": "ViewerCameraMessage",
@@ -98,51 +101,65 @@ class Bench:
         self.folder = folder
         self.pilot = Pilot(lambda c: prepare(scenario, c.mission, c.seed, known=known), folder, print)
 
-    def fly(self) -> float:
-        """Wall-clock time of one landing, s, from its first tick on."""
+    def fly(self) -> None:
+        """One landing."""
         self.pilot.start(Choices(), [])
         while self.pilot.flight is None or self.pilot.preparing or not self.pilot.flying:
             time.sleep(0.001)
-        flight = self.pilot.flight
-        while flight.tick < 2:
-            time.sleep(0.0005)
-        begin, first = time.perf_counter(), flight.tick
-        while flight.tick < 14_000 and self.pilot.ended is None:
-            time.sleep(0.0005)
-        wall = (time.perf_counter() - begin) / (flight.tick - first)
         while self.pilot.ended is None:
             time.sleep(0.01)
-        return wall
 
-    def cost(self, rounds: int) -> None:
+    def cost(self, seconds: float) -> None:
+        """The console is there and gone in turn, for half a second each, while landings are flown as fast as they go."""
         self.pilot.pace.set(None)
         server = PageServer("127.0.0.1", 0, None, "bench")
-        console = Console(server, self.pilot, Choices())
+        console, over = Console(server, self.pilot, Choices()), threading.Event()
+        blocks, last = {False: [], True: []}, [0.0]
+        there, leave = [False], Steered._leave
+
+        def timed(flight: Steered, controller, rows) -> None:
+            now = time.perf_counter()
+            if flight.tick > 1000 and len(rows) == 250:
+                blocks[there[0]].append((now - last[0]) / len(rows))
+            leave(flight, controller, rows)
+            last[0] = time.perf_counter()
+
+        def turns() -> None:
+            while not over.is_set():
+                there[0] = not there[0]
+                if not there[0]:
+                    over.wait(SLICE_S)
+                    continue
+                console._closed.clear()
+                thread = threading.Thread(target=console.run)
+                thread.start()
+                over.wait(SLICE_S)
+                console.close()
+                thread.join()
+
+        reader = child(server.address, 3.0 * seconds + 60.0, 1, restless=False)
+        while not server.pages:
+            time.sleep(0.01)
         self.fly()
-        bare, shown = [], []
-        for _ in range(rounds):
-            bare.append(self.fly())
-            reader = child(server.address, 60.0, 1, restless=False)
-            while not server.pages:
-                time.sleep(0.01)
-            console._closed.clear()
-            thread = threading.Thread(target=console.run)
-            thread.start()
-            shown.append(self.fly())
-            console.close()
-            thread.join()
-            reader.kill()
-            reader.wait()
-            while server.pages:
-                time.sleep(0.01)
-        for name, times in (("without", bare), ("with", shown)):
-            quick, middle = 1e6 * min(times), 1e6 * statistics.median(times)
-            print(f"{name:8s} a console: {quick:6.1f} µs a tick at best, {middle:6.1f} µs in the middle of {rounds}")
-        ratios = sorted(b / a for a, b in zip(bare, shown, strict=True))
-        print(
-            f"cost: {100 * (min(shown) / min(bare) - 1):+.1f} % at best, {100 * (statistics.median(ratios) - 1):+.1f} % in the middle"
-        )
+        Steered._leave = timed
+        turner, begin = threading.Thread(target=turns), time.monotonic()
+        turner.start()
+        while time.monotonic() - begin < seconds:
+            self.fly()
+        over.set()
+        turner.join()
+        Steered._leave = leave
+        reader.kill()
+        reader.wait()
         server.stop()
+        without, shown = (np.sort(1e6 * np.array(blocks[on])) for on in (False, True))
+        for name, found in (("without", without), ("with", shown)):
+            low, middle = np.quantile(found, (0.25, 0.5))
+            print(
+                f"{name:8s} a console: {len(found)} blocks, {low:.1f} µs a tick in the best quarter, {middle:.1f} µs in the middle"
+            )
+        low, middle = (np.quantile(shown, q) / np.quantile(without, q) - 1.0 for q in (0.25, 0.5))
+        print(f"cost: {100 * low:+.1f} % in the best quarter, {100 * middle:+.1f} % in the middle")
 
     def disturb(self, seconds: float) -> None:
         gaps: list[float] = []
@@ -176,10 +193,8 @@ class Bench:
             ticks = read_log(log).ticks["measurement"]["tick"]
             lost += int(ticks[-1]) + 1 - len(ticks)
         for name, found in (("calm", calm), ("disturbed", sorted(gaps))):
-            tail = found[int(0.99 * len(found))]
-            print(
-                f"{name:9s}: blocks every {1e3 * statistics.median(found):.1f} ms, 99 % within {1e3 * tail:.1f}, longest {1e3 * found[-1]:.1f}"
-            )
+            middle, most, longest = (1e3 * found[int(share * (len(found) - 1))] for share in (0.5, 0.99, 1.0))
+            print(f"{name:9s}: a block every {middle:.1f} ms, 99 % within {most:.1f} ms, the longest {longest:.1f} ms")
         print(
             f"ticks lost: {lost}; messages ignored: {server.ignored}; memory after each flight, MB: {[round(m) for m in used]}"
         )
@@ -190,9 +205,9 @@ if __name__ == "__main__":
     if sys.argv[1:2] == ["--pages"]:
         open_pages(sys.argv[2], float(sys.argv[3]), int(sys.argv[4]), sys.argv[5] == "1")
     else:
-        rounds, seconds = [*map(float, sys.argv[1:]), *(5.0, 60.0)[len(sys.argv) - 1 :]]
+        first, seconds = [*map(float, sys.argv[1:]), *(30.0, 60.0)[len(sys.argv) - 1 :]]
         with tempfile.TemporaryDirectory() as folder:
             bench = Bench(Path(folder))
-            bench.cost(round(rounds))
+            bench.cost(first)
             bench.disturb(seconds)
             bench.pilot.close()

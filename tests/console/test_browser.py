@@ -169,7 +169,7 @@ def test_a_landing_is_started_steered_and_looked_at_again(browser, tmp_path) -> 
         second.page.close()
 
         # Held by space, let go, aborted by escape, in the dark and in a narrow window.
-        view.page.locator("label", has_text="dark").first.click()
+        view.key("l")
         view.choose("times real time", "1/32")
         view.press("next seed")
         view.phase("self_test")

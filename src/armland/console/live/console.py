@@ -1,5 +1,6 @@
 """The console: the page on which a live flight is watched and steered."""
 
+import sys
 import threading
 import time
 from collections import deque
@@ -31,6 +32,9 @@ from armland.rotations import Array
 from armland.view.figures.flight import upward_forces_n
 
 FRAME_S = 1.0 / 30.0
+
+TURN_S = 2e-4
+"""How long a thread of Python may keep another waiting."""
 
 REST_EVERY = 4
 """Frames between two looks of plots and texts."""
@@ -81,6 +85,8 @@ class Console:
     def run(self) -> None:
         """Serve until `close`."""
         frame = 0
+        # The thread that flies takes its turn at once, and need not wait until this one has drawn a whole picture.
+        sys.setswitchinterval(TURN_S)
         while not self._closed.wait(FRAME_S):
             frame += 1
             flight = self._pilot.flight
@@ -91,13 +97,16 @@ class Console:
                 if frame % REST_EVERY == 0:
                     self._show_texts(None)
                 continue
-            now = self._flight.now
-            if self._server.pages:
-                self._show_scene(now)
-                if frame % REST_EVERY == 0:
-                    self._show_plots()
-            if frame % REST_EVERY == 0:
-                self._show_texts(now)
+            with self._server.viser.atomic():
+                self._show(self._flight.now, frame % REST_EVERY == 0)
+
+    def _show(self, now: Now, all_of_it: bool) -> None:
+        if self._server.pages:
+            self._show_scene(now)
+            if all_of_it:
+                self._show_plots()
+        if all_of_it:
+            self._show_texts(now)
 
     def close(self) -> None:
         """End `run`."""
@@ -118,6 +127,8 @@ class Console:
         self._outcomes.clear()
         self._way: Array | None = way_of(plan)
         self.controls.offer([p.name for p in plan.phases if not p.final and p.name not in HELD_BY_HAND])
+        self._brief = flight.flight.brief
+        self._shown = ("", "")
         self._forecast()
 
     def _take_over(self) -> None:
@@ -137,13 +148,12 @@ class Console:
     def _show_scene(self, now: Now) -> None:
         assert self._stage is not None
         wind = now.air if np.isfinite(now.air).all() else None
-        with self._server.viser.atomic():
-            self._stage.show(now.tick[0], wind)
-            if self._way is not None:
-                self._stage.draw_path(now.tick["truth"][0], self._way)
-                # It stands still but on a deck that moves.
-                if not now.tick["truth"]["deck_quat"][0, 1:].any():
-                    self._way = None
+        self._stage.show(now.tick[0], wind)
+        if self._way is not None:
+            self._stage.draw_path(now.tick["truth"][0], self._way)
+            # It stands still but on a deck that moves.
+            if not now.tick["truth"]["deck_quat"][0, 1:].any():
+                self._way = None
 
     def _show_plots(self) -> None:
         if len(self._rows) > 1 and self._flight is not None:
@@ -162,7 +172,7 @@ class Console:
         _put(self._status, self._status_html(now))
         _put(self._strip, strip_html(plan.names, self._phases[-16:], int(tick["mission"]["phase"])))
         rotors, arm, cradle = (float(f[0]) for f in upward_forces_n({"truth": now.tick["truth"]}))
-        bars = bars_of(tick, self._flight.flight.brief.limits, 1e-3 * plan.scenario.limits.uav_age_ms)
+        bars = bars_of(tick, self._brief.limits, 1e-3 * plan.scenario.limits.uav_age_ms)
         flags = flags_of(tick)
         _put(
             self._gauges,
@@ -207,8 +217,10 @@ class Console:
             return
         plan, (fault, phase) = self._flight.flight.plan, self.controls.cell()
         where = self._present(plan) if phase == AT_ONCE else phase
-        _put(self.controls.forecast, lines_html([forecast(plan, fault, where)]))
-        _put(self.controls.table, table_html(plan, (fault, where)))
+        if self._shown != (fault, where):
+            self._shown = fault, where
+            _put(self.controls.forecast, lines_html([forecast(plan, fault, where)]))
+            _put(self.controls.table, table_html(plan, (fault, where)))
 
     def _present(self, plan: Plan) -> str:
         now = None if self._flight is None else self._flight.now

@@ -32,6 +32,9 @@ WEIGHT_M, WIND_M = 0.25, 0.08
 SHORTEST_M = 0.04
 """Length of an arrow that is worth to be seen, m."""
 
+STILL = 1e-5
+"""Change of a place, m, and of a quaternion's numbers, 1, that nobody sees."""
+
 SEA_M = -1.0
 """Height of the still water below the deck, m."""
 
@@ -137,7 +140,7 @@ class Stage:
     def _move(self, body: int, frame: Any, place: Array, turn: Array) -> None:
         # What stands still is told once: each message costs the page time.
         before = self._last.get(body)
-        if before is not None and (before[0] == place).all() and (before[1] == turn).all():
+        if before is not None and abs(before[0] - place).max() < STILL and abs(before[1] - turn).max() < STILL:
             return
         self._last[body] = place.copy(), turn.copy()
         frame.position, frame.wxyz = place, turn
