@@ -31,6 +31,7 @@ LAYERS = (
     ("experiments",),
     ("vision",),
     ("view",),
+    ("console",),
     ("cli",),
 )
 FOUNDATION = {"__init__", "errors", "rotations", "records", "native", "linking", "compiled", "scenario"}

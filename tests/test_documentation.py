@@ -183,7 +183,7 @@ def refusal(call: str) -> str | None:
         return f"no command {words[0]}"
     try:
         given = command.make_parser(typer.Context(command)).parse_args(words[1:])[0]
-        if (mission := given.get("mission", "NAME")) not in ("NAME", "MISSION"):
+        if (mission := given.get("mission") or "NAME") not in ("NAME", "MISSION"):
             registry.mission_named(mission)
         load("landing", {"settings": given.get("settings")})
     except (TyperException, ArmlandError) as e:

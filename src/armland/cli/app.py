@@ -19,6 +19,7 @@ from armland.cli.commands.render import render
 from armland.cli.commands.run import land, run, takeoff
 from armland.cli.commands.studies import envelope, takeoff_weight, verify
 from armland.cli.commands.uav import uav
+from armland.cli.commands.watch import console, replay
 
 SCHEMA_EPILOG = """**Examples**
 
@@ -65,6 +66,8 @@ for command in (
     takeoff,
     run,
     paper,
+    console,
+    replay,
     report,
     render,
     log,

@@ -162,6 +162,11 @@ FLOWN = {
         "Recorded motion of the deck instead: CSV with time_s, heave_m, roll_deg and so on.",
         metavar="FILE",
     ),
+    "operator": option(
+        Path | None,
+        "What somebody steered by hand is done again: the log of a console (MCAP), or a line of JSON for each message.",
+        metavar="FILE",
+    ),
     "seeds": option(int, "Fly this many seeds and print how many succeed.", default=1, min=1, max=1_000_000),
     "jobs": option(int | None, "Flights of a campaign at a time; one per core if absent.", min=1, max=1000),
     **MADE,

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -160,12 +160,27 @@ def fly(
     return fly_prepared(prepare(scenario, mission, seed, law, experiment, trial), log, progress)
 
 
-def fly_prepared(flight: Flight, log: Path | None = None, progress: Progress | None = None) -> Episode:
-    """Fly what was prepared and judge it; arguments and errors as for `fly`."""
+class Steered(loops.Simulated, Protocol):
+    """A port that acts on its own between ticks, and says what it did as a text for the log."""
+
+    attach: Callable[[str, str], None] | None
+    """Takes name and text of the log's attachment."""
+
+
+def fly_prepared(
+    flight: Flight, log: Path | None = None, progress: Progress | None = None, port: Steered | None = None
+) -> Episode:
+    """Fly what was prepared and judge it; arguments and errors as for `fly`.
+
+    Args:
+        port: around the flight's simulator, in its place.
+    """
     scenario, made, simulator, controller, metadata, _ = flight
     period = flight.period_ns
     with Recorder(log, made.joints, period, metadata, scenario=scenario.text, keep_in_memory=True) as recorder:
-        wall = loops.fly(simulator, controller, made, recorder, progress)
+        if port is not None:
+            port.attach = recorder.attach
+        wall = loops.fly(port or simulator, controller, made, recorder, progress)
     ticks = recorder.ticks
     judgement, simulated = judge(ticks, flight.brief), 1e-9 * period * len(ticks)
     result = {

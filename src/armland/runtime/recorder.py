@@ -65,6 +65,7 @@ class Recorder:
         self._begin_block()
         own = {"version": __version__, "joints": str(joints), "period_ns": str(period_ns)}
         texts = {SCENARIO_NAME: scenario} if scenario else {}
+        self._attached: dict[str, str] = {}
         self._messages = MessageBlock(joints, block)
         self._file = None if path is None else McapFile(path, joints, own | metadata, texts)
 
@@ -77,6 +78,10 @@ class Recorder:
         self._count += count
         if self._count == self._size:
             self._end_block()
+
+    def attach(self, name: str, text: str) -> None:
+        """Attach a text to the file before the next block of ticks; of several of one name the last one counts."""
+        self._attached[name] = text
 
     @property
     def ticks(self) -> Records:
@@ -123,6 +128,8 @@ class Recorder:
         self._count = 0
 
     def _write(self, file: McapFile) -> None:
+        while self._attached:
+            file.attach(*self._attached.popitem())
         ticks = self._ticks[: self._count]
         if len(ticks):
             messages = self._messages if len(ticks) == self._size else MessageBlock(self._joints, len(ticks))

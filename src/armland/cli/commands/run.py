@@ -13,10 +13,15 @@ from armland.cli.commands.uav import tell_uav
 from armland.cli.console import diagnostics, flights_told, phases_told, progress_bar, ready
 from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
+from armland.errors import ConfigurationError
 
 if TYPE_CHECKING:
     from armland.experiments.episode import Flight
+    from armland.experiments.operator.hand import Hand
+    from armland.experiments.operator.message import Message
+    from armland.records import Records
     from armland.runtime.log import Log
+    from armland.scenario import Scenario
 
 STORE = "campaign.sqlite"
 
@@ -47,6 +52,8 @@ same keys does in a scenario's file.
 
 `armland COMMAND --sea 2 --hull 4` flies over a deck on a hull of 4 m in sea state 2; `armland COMMAND --sea-trace deck.csv` over a
 recorded one.
+
+`armland COMMAND --operator out/console/landing_1.mcap` flies again what somebody steered by hand in `armland console`.
 
 `armland COMMAND --law my_file.py:my_law` controls the held UAV by your own law.
 
@@ -104,12 +111,18 @@ def takeoff(**given: Any) -> None:
     _fly("takeoff", given)
 
 
-def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
+def loaded_for(mission: str, given: dict[str, Any]) -> "Scenario":
+    """The scenario that a mission is flown with, as the options `given` say; errors as for `options.load`."""
     from armland.mission.registry import mission_named
 
     hinged = mission_named(mission).start == "hinged"
     name = given["scenario"] or ("paper" if hinged else "landing")
-    loaded = options.load_flown(mission, name, given)
+    return options.load_flown(mission, name, given)
+
+
+def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
+    script = script_of_option(given)
+    loaded = loaded_for(mission, given)
     tell_arm(loaded, diagnostics())
     tell_uav(loaded, diagnostics())
     console = ready(joints_of(loaded))
@@ -118,10 +131,50 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
     flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))
     if flight.moved:
         console.print(f"place: {flight.moved}", highlight=False, markup=False, soft_wrap=True)
-    (_campaign if given["seeds"] > 1 else _single)(flight, mission, given, console)
+    if given["seeds"] > 1:
+        _campaign(flight, mission, given, console)
+    _single(flight, mission, given, console, script)
 
 
-def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> NoReturn:
+def script_of_option(given: dict[str, Any]) -> "tuple[Message, ...] | None":
+    """The messages that `--operator` names; None where it is not given.
+
+    Raises:
+        LogError: they cannot be read.
+        ConfigurationError: a campaign, which nobody steers.
+    """
+    if given.get("operator") is None:
+        return None
+    if given["seeds"] > 1:
+        raise ConfigurationError("--operator steers one flight; leave out --seeds")
+    from armland.experiments.operator.script import read_script
+
+    return read_script(given["operator"])
+
+
+def _steered(flight: "Flight", script: "tuple[Message, ...] | None") -> "Hand | None":
+    if script is None:
+        return None
+    from armland.experiments.operator.hand import Hand
+
+    return Hand(flight, script)
+
+
+def _tell_same(given: dict[str, Any], ticks: "Records", console: Console) -> None:
+    # Where the script stands in a log, whether the flight is that of the log.
+    if given["operator"] is None or given["operator"].suffix != ".mcap":
+        return
+    from armland.experiments.operator.script import first_difference
+    from armland.runtime.log import read_log
+
+    k = first_difference(ticks, read_log(given["operator"]).ticks)
+    words = "the same ticks as in" if k is None else f"not the same from tick {k} on as in"
+    console.print(f"{words} {given['operator']}", highlight=False, markup=False, soft_wrap=True)
+
+
+def _single(
+    flight: "Flight", mission: str, given: dict[str, Any], console: Console, script: "tuple[Message, ...] | None"
+) -> NoReturn:
     from armland.experiments.episode import fly_prepared
     from armland.experiments.judge.brief import brief_of
     from armland.experiments.judge.deck import seen_from_deck
@@ -138,8 +191,10 @@ def _single(flight: "Flight", mission: str, given: dict[str, Any], console: Cons
         shown = given["figures"] or given["film"]
         file = results.folder / name if given["log"] else results.scratch(name) if shown else None
         log = cache(lambda: read_log(out / name if given["log"] else results.scratch(name)))
+        hand = _steered(flight, script)
         with phases_told(console, mission) as tell:
-            episode = fly_prepared(flight, file, tell)
+            episode = fly_prepared(flight if hand is None else hand.flight, file, tell, hand)
+        _tell_same(given, episode.ticks, console)
         run = Flown(
             mission, seen_from_deck({name: episode.ticks[name] for name in MESSAGES}), brief_of(episode.metadata)
         )

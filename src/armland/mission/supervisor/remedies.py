@@ -166,6 +166,8 @@ def stopped(
         learnt: of `learnt_values`, when the fault was found; it is left out where nothing is given.
         unmet: bit i where the phase waited for signal i of `SIGNALS` in vain.
     """
+    if fault == "operator":
+        return f"ended in {end} after {before}: the operator aborted it; now {now}"
     if fault not in REMEDIES:
         why = timeouts.get(before, "time was over")
         missing = [UNMET[name] for i, name in enumerate(SIGNALS) if unmet >> i & 1]

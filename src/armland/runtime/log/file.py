@@ -89,11 +89,19 @@ class McapFile:
         self._metadata.append(MetadataIndex(self._size, len(record), METADATA_NAME))
         self._write(record)
         for name, text in texts.items():
-            data = text.encode()
-            record = _pack(Attachment(0, 0, name, "text/plain", data))
-            self._attachments.append(AttachmentIndex(self._size, len(record), 0, 0, len(data), name, "text/plain"))
-            self._write(record)
+            self.attach(name, text)
         self._write(_pack(*self._schemas, *self._channels))
+
+    def attach(self, name: str, text: str) -> None:
+        """Append an attachment.
+
+        Raises:
+            LogError: the disk is full or the file is gone.
+        """
+        data = text.encode()
+        record = _pack(Attachment(0, 0, name, "text/plain", data))
+        self._attachments.append(AttachmentIndex(self._size, len(record), 0, 0, len(data), name, "text/plain"))
+        self._write(record)
 
     def write_chunk(self, block: MessageBlock, times: NDArray[np.uint64]) -> None:
         """Append a filled block whose ticks have the `times` in ns.

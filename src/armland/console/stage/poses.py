@@ -1,0 +1,121 @@
+"""Where the bodies of a logged flight are: MuJoCo's own kinematics of the scene that the log's scenario makes.
+
+| of a tick's truth | sets |
+|---|---|
+| `deck`, `deck_quat` | the deck's joints; none on land |
+| `q` | the arm's joints |
+| `r`, `quat` | a free UAV by its pivot, which no deviation of its centre of mass moves |
+| `ee_quat` or `plate_quat`, `quat` | the hinge between arm or plate and UAV |
+
+The cradle's buffers are not logged: its rails are drawn where they rest without load, which is 2 mm higher at most.
+"""
+
+from collections.abc import Mapping
+
+import mujoco
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from armland.errors import ArmlandError, LogError
+from armland.models.description import EE_SITE
+from armland.plant.scene.composition import Scene, build_scene
+from armland.plant.scene.uav import UAV
+from armland.records import Records
+from armland.rotations import Array, matrix
+from armland.scenario import Scenario
+
+
+def scene_of(metadata: Mapping[str, str]) -> Scene:
+    """The scene of the flight that a log's metadata describes.
+
+    Raises:
+        LogError: the log has no scenario, or none that this version knows; or a file of it is no longer there.
+    """
+    try:
+        scenario = Scenario.model_validate_json(metadata["scenario"])
+        return build_scene(scenario, "hinged" if metadata["start"] == "hinged" else "free")
+    except KeyError as e:
+        raise LogError(
+            f"the log's metadata has no {e.args[0]!r}, without which there is no picture of its scene"
+        ) from e
+    except ArmlandError as e:
+        raise LogError(f"no picture of the log's scene: {e}") from e
+    except ValueError as e:
+        first = str(e).splitlines()[0]
+        raise LogError(f"no picture of the log's scene, its scenario is none of this version: {first}") from e
+
+
+class Poses:
+    """Kinematics of a scene: `set` it to a tick's truth, then read `bodies`, `site` and `camera`.
+
+    Args:
+        scene: of `scene_of`, or of the simulator that flies; its model is read only.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.model = scene, scene.model
+        self._data = mujoco.MjData(scene.model)
+        self._pivot = scene.model.site(f"{UAV}pivot").pos.copy()
+        self._hung = Rotation.identity()
+
+    def set(self, truth: Records) -> None:
+        """Take over the truth of one tick, a record of `records.layout("truth", n)`.
+
+        Raises:
+            LogError: it has not as many joints as the scene's arm.
+        """
+        s, q = self.scene, self._data.qpos
+        if len(truth["q"]) != s.joints:
+            raise LogError(f"the log has {len(truth['q'])} joints, the arm of its scenario {s.joints}")
+        q[s.joint_qpos] = truth["q"]
+        if s.deck_qpos >= 0:
+            yaw_pitch_roll = rotation(truth["deck_quat"]).as_euler("ZYX")
+            q[s.deck_qpos : s.deck_qpos + 6] = [*truth["deck"], *yaw_pitch_roll]
+        body = rotation(truth["quat"])
+        if s.bond == "free":
+            q[s.uav_qpos[:3]] = truth["r"] - body.apply(self._pivot)
+            q[s.uav_qpos[3:]] = truth["quat"]
+            # From the UAV to its plate the hinge turns by Ry, Rx, Rz.
+            y, x, z = (body.inv() * rotation(truth["plate_quat"])).as_euler("YXZ")
+            q[s.hinge_qpos] = [y, x, z]
+        else:
+            # From the arm to the UAV by Rz, Rx, Ry.
+            q[s.hinge_qpos] = (rotation(truth["ee_quat"]).inv() * body).as_euler("ZXY")
+        mujoco.mj_kinematics(self.model, self._data)
+        mujoco.mj_camlight(self.model, self._data)
+
+    @property
+    def bodies(self) -> tuple[Array, Array]:
+        """Positions (nbody, 3), m, and attitudes (nbody, 4), scalar first, W."""
+        return self._data.xpos, self._data.xquat
+
+    @property
+    def end_effector(self) -> Array:
+        """The end effector point (3,), m, W."""
+        return np.array(self._data.site(EE_SITE).xpos)
+
+    def camera(self, name: str) -> tuple[Array, Array] | None:
+        """Optical centre (3,), m, W, and attitude (4,), W<-camera with z along the view and y down; None where there is none."""
+        number = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_CAMERA, name)
+        if number < 0:
+            return None
+        # MuJoCo's cameras look along their -z, with y up.
+        R = self._data.cam_xmat[number].reshape(3, 3) @ np.diag([1.0, -1.0, -1.0])
+        return np.array(self._data.cam_xpos[number]), Rotation.from_matrix(R).as_quat(scalar_first=True)
+
+
+def rotation(quat: Array) -> Rotation:
+    """A logged attitude (4,), scalar first; what is no rotation, in a damaged log, is none at all."""
+    good = np.isfinite(quat).all() and np.linalg.norm(quat) > 0.5
+    return Rotation.from_quat(quat, scalar_first=True) if good else Rotation.identity()
+
+
+def forces_from(truth: Records) -> Array:
+    """Force on the UAV at the hinge (3,), N, W; zeros where it is none."""
+    force = np.array(truth["hinge_force"], dtype=float)
+    return force if np.isfinite(force).all() else np.zeros(3)
+
+
+def to_world(truth: Records, points: Array) -> Array:
+    """Points (k, 3), m, D, in W at one tick."""
+    return np.asarray(points) @ matrix(np.array(truth["deck_quat"])).T + truth["deck"]
