@@ -11,9 +11,10 @@ from pages.svg import BLUE, GREEN, GREY, ORANGE, PALE, RED, Drawing, Point
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
 
 PLACES: dict[str, Point] = {
-    "cli": (50, 95),
-    "view": (150, 95),
-    "vision": (250, 95),
+    "cli": (35, 25),
+    "console": (120, 60),
+    "view": (185, 130),
+    "vision": (265, 95),
     "experiments": (375, 95),
     "runtime": (500, 60),
     "plant": (500, 130),
@@ -37,7 +38,8 @@ IMPORTS = (
     ("experiments", "runtime"),
     ("vision", "experiments"),
     ("view", "vision"),
-    ("cli", "view"),
+    ("console", "view"),
+    ("cli", "console"),
 )
 """Who imports whom; what is reached over several arrows may be imported as well."""
 

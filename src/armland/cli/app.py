@@ -9,13 +9,13 @@ from armland.cli.commands.arm import arm
 from armland.cli.commands.campaign import app as campaign
 from armland.cli.commands.detector import detector
 from armland.cli.commands.doctor import doctor
-from armland.cli.commands.export import export
 from armland.cli.commands.gains import gains
-from armland.cli.commands.logs import log, report
+from armland.cli.commands.logs.export import export
+from armland.cli.commands.logs.render import render
+from armland.cli.commands.logs.show import log, report
 from armland.cli.commands.margins import margins
 from armland.cli.commands.paper import paper
 from armland.cli.commands.reach import reach
-from armland.cli.commands.render import render
 from armland.cli.commands.run import land, run, takeoff
 from armland.cli.commands.studies import envelope, takeoff_weight, verify
 from armland.cli.commands.uav import uav
