@@ -11,19 +11,19 @@ from pages.svg import BLUE, GREEN, GREY, ORANGE, PALE, RED, Drawing, Point
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
 
 PLACES: dict[str, Point] = {
-    "cli": (35, 25),
-    "console": (120, 60),
-    "view": (185, 130),
-    "vision": (265, 95),
-    "experiments": (375, 95),
-    "runtime": (500, 60),
-    "plant": (500, 130),
-    "mission": (610, 95),
-    "control": (725, 60),
-    "estimation": (725, 130),
-    "laws": (610, 25),
-    "models": (845, 95),
-    "foundation": (845, 175),
+    "cli": (35, 95),
+    "console": (130, 95),
+    "view": (230, 95),
+    "vision": (330, 95),
+    "experiments": (455, 95),
+    "runtime": (580, 60),
+    "plant": (580, 130),
+    "mission": (690, 95),
+    "control": (805, 60),
+    "estimation": (805, 130),
+    "laws": (690, 25),
+    "models": (925, 95),
+    "foundation": (925, 175),
 }
 IMPORTS = (
     ("models", "foundation"),
@@ -53,7 +53,7 @@ def half_width(name: str) -> float:
 
 def parts() -> Drawing:
     """Which part imports which."""
-    drawing = Drawing(905, 205, "Which part of armland imports which: " + ", ".join(f"{a} {b}" for a, b in IMPORTS))
+    drawing = Drawing(985, 205, "Which part of armland imports which: " + ", ".join(f"{a} {b}" for a, b in IMPORTS))
     for one, other in IMPORTS:
         (x, y), (u, v) = PLACES[one], PLACES[other]
         if x == u:
