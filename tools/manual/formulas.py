@@ -7,8 +7,10 @@ from typing import Any
 from latex2mathml.converter import convert
 
 NUMBER = re.compile(r"\\tag\{([^}]*)\}")
-SYMBOL = re.compile(r"(?<![A-Za-z0-9_])(Δ?[^\W\d_][\u0300-\u036f]*)_([A-Za-z]{1,4}|[Α-Ωα-ω]|[0-9])(?![A-Za-z0-9_])")
+SYMBOL = re.compile(r"(?<![A-Za-z0-9_])(Δ?[^\W\d_][\u0300-\u036f]*)_([A-Za-z]{1,5}|[Α-Ωα-ω]|[0-9])(?![A-Za-z0-9_])")
 """A letter and its index, as in F_EE, as the pages write it where they are read as text."""
+SPELT = {"{aligned}": "{split}", r"\mathcal J": "𝒥", r"\mathcal{J}": "𝒥"}
+"""The converter knows this alignment by another name; browsers set no script letters but those that are characters."""
 TAG = re.compile(r"(<[^>]*>)")
 LITERAL = ("code", "pre", "math", "svg", "script", "style")
 """Elements whose text stays as it is."""
@@ -18,8 +20,9 @@ def block(source: str, *_: Any, **__: Any) -> str:
     r"""HTML of a block of LaTeX, as `pymdownx.superfences` calls for it; a `\tag{29}` becomes the number at the right margin."""
     numbers = "".join(f'<span class="number">({escape(number)})</span>' for number in NUMBER.findall(source))
     bare = NUMBER.sub("", source).strip()
-    # The converter knows the same alignment by another name.
-    formula = convert(bare.replace("{aligned}", "{split}"), display="block")
+    for said, known in SPELT.items():
+        bare = bare.replace(said, known)
+    formula = convert(bare, display="block")
     return f'<div class="formula">{formula}{numbers}</div>'
 
 

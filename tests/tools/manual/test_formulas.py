@@ -13,6 +13,10 @@ def test_formula_is_mathml_with_its_number_beside_it() -> None:
     assert "".join(formula.itertext()).replace(" ", "") == "V˙2=−k3z1⊤Qz1"
 
 
+def test_script_letters_are_characters() -> None:
+    assert "𝒥" in block("\\bar{\\mathcal J} = M^{-1} \\mathcal J^\\top")
+
+
 def test_lines_are_aligned_where_the_source_says() -> None:
     html = block("\\begin{aligned}\na &= b \\\\\n&= c\n\\end{aligned}\n")
     assert html.count("<mtr>") == 2
