@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from armland.errors import ConfigurationError, WorkspaceError
+from armland.experiments import placing
 from armland.experiments.episode import fly_prepared, prepare
 from armland.experiments.placing import mounted_further, placed
+from armland.mission.feasibility import placing as feasibility
 from armland.mission.registry import MISSIONS
 from armland.models.description import resolve
 from armland.scenario import load_scenario
@@ -116,3 +118,29 @@ def test_frame_that_a_user_chose_stays_and_one_that_does_not_help_is_not_told(in
 def test_arm_whose_frame_is_the_outermost_is_refused_as_it_was(six_axis):
     with pytest.raises(WorkspaceError, match="no place was found"):
         mounted_further(six_axis, NOWHERE, made_at([], "tool0"))
+
+
+def searches(monkeypatch, there):
+    """Replace the search for places by one that looks at `there`; returns the nearness of each search."""
+    asked = []
+
+    def alternatives(scenario, mission, keep, nearness, seen=None):
+        asked.append(nearness)
+        if seen is not None:
+            seen += there
+        return iter(())
+
+    for module in (placing, feasibility):
+        monkeypatch.setattr(module, "alternatives", alternatives)
+        monkeypatch.setattr(module, "nowhere", lambda scenario, mission: "No place was found for this arm.")
+    return asked
+
+
+@pytest.mark.parametrize(("there", "keep", "searched"), [([], "", 1), ([object()], "", 2), ([], "catch", 2)])
+def test_what_was_looked_for_everywhere_is_not_looked_for_again(six_axis, monkeypatch, there, keep, searched):
+    """Near the wanted place there is none if there is none at all; where the user keeps one, others may do."""
+    asked = searches(monkeypatch, there)
+    monkeypatch.setattr(placing, "kept", lambda scenario: frozenset(keep.split()))
+    with pytest.raises(WorkspaceError, match=r"too far\. No place was found"):
+        placed(six_axis, LANDING, TOO_FAR, lambda one: one)
+    assert len(asked) == searched

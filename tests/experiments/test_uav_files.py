@@ -64,6 +64,14 @@ def test_light_uav_takes_off_though_the_arm_leaves_more_force_than_a_release_may
     assert 0.095 < np.median(force) < 0.3
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [130013, 130014])
+def test_unrest_of_the_arm_is_no_plate_that_is_touched(seed):
+    """The tool's inertia makes more force than the weight of a UAV of 0.04 kg lets a contact have."""
+    result = fly(load("landing", {"uav": "crazyflie", "deviation": "published"}), "takeoff", seed).result
+    assert result["success"], result["reason"]
+
+
 def test_three_rotors_are_refused_before_anything_moves():
     with pytest.raises(ModelError, match=r"3 rotors make 3 of the four independently"):
         prepare(load_scenario(UAVS / "tri.toml"), "landing", 1)

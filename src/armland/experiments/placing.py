@@ -7,7 +7,8 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from armland.errors import ConfigurationError, WorkspaceError
-from armland.mission.feasibility.placing import BEST, MOST, alternatives, kept, refused, told_places
+from armland.mission.feasibility.places import Place
+from armland.mission.feasibility.placing import BEST, MOST, alternatives, kept, nowhere, refused, told_places
 from armland.mission.table.mission import Mission
 from armland.models.arm_file.reading import read_tree
 from armland.models.arm_file.tip import further_out
@@ -56,12 +57,15 @@ def placed(
         WorkspaceError: the refusal with the nearest place that works, where nothing may move: the arm is the one for which the places
             are made, or the user set both; or with the word that there is none.
     """
-    keep = kept(scenario)
+    keep, seen = kept(scenario), list[Place]()
     if resolve(scenario.arm.file).parent != ASSETS and len(keep) < 2:
-        for tried, one in enumerate(alternatives(scenario, mission, keep, BEST)):
+        for tried, one in enumerate(alternatives(scenario, mission, keep, BEST, seen)):
             try:
                 return make(one), f"{told_places(one, scenario)} chosen, because {refusal}"
             except ConfigurationError:
                 if tried + 1 >= MOST:
                     break
+        if not keep and not seen:
+            # A search takes a minute: the nearest of none need not be looked for.
+            raise WorkspaceError(f"{refusal}. {nowhere(scenario, mission)}") from refusal
     raise refused(scenario, mission, refusal, make) from refusal

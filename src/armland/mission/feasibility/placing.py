@@ -6,7 +6,7 @@ from armland.errors import ConfigurationError, WorkspaceError
 from armland.mission.belief import flyer
 from armland.mission.feasibility.hindrance import hindrance
 from armland.mission.feasibility.obstacles import Obstacles
-from armland.mission.feasibility.places import Bench, places
+from armland.mission.feasibility.places import Bench, Place, places
 from armland.mission.feasibility.reach import survey
 from armland.mission.table.mission import Mission
 from armland.models.parameters import arm_model
@@ -31,7 +31,9 @@ def kept(scenario: Scenario) -> frozenset[str]:
     return frozenset(name for key, name in MOVES.items() if key in scenario.asked)
 
 
-def alternatives(scenario: Scenario, mission: Mission, keep: frozenset[str], nearness: float) -> Iterator[Scenario]:
+def alternatives(
+    scenario: Scenario, mission: Mission, keep: frozenset[str], nearness: float, seen: list[Place] | None = None
+) -> Iterator[Scenario]:
     """Scenarios with other places, in which nothing that is known of the arm speaks against the mission; the best first.
 
     Args:
@@ -39,12 +41,15 @@ def alternatives(scenario: Scenario, mission: Mission, keep: frozenset[str], nea
         mission: one with way points.
         keep: those of "catch" and "put_down" that stay where they are.
         nearness: merit that a metre from the wanted catch costs, 1/m.
+        seen: gets all places that are looked at more closely; where it stays empty another nearness finds none either.
     """
     arm, weight = arm_model(scenario.believed()), flyer(scenario.believed()).weight
     for wide in _slots(scenario):
         believed = wide.believed()
         bench = Bench(arm, believed, weight, Obstacles(believed), nearness)
         for found in places(bench, keep):
+            if seen is not None:
+                seen += found
             for place in found[:TRIES]:
                 one = place.of(wide)
                 try:

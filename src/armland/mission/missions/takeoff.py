@@ -42,9 +42,10 @@ BEFORE = (
     Phase("reach", **STANDING, arm="join", duration_s=2.0, timeout_s=5.0).to(
         "touch", "progress > almost_one, uav_seen > half"
     ),
-    # What is felt before the arm is half-way to the plate is the arm's own stop before it, which a light UAV's threshold lies below.
+    # What is felt before the arm is half-way to the plate is the arm's own stop before it, which a light UAV's threshold lies below;
+    # so does what the tool's inertia makes of the arm's unrest farther on. A plate that is seen well above the magnet touches nothing.
     Phase("touch", **GRIPPING, arm="close", uav="off", duration_s=1.5, timeout_s=3.0).to(
-        "grip", "contact > half, progress > half"
+        "grip", "contact > half, progress > half, gap < let_go_m"
     ),
     # The magnet stays on, so what the arm pushes on a UAV that stands need be no less than what can be told from its own motion.
     Phase("grip", **GRIPPING, arm="yield", uav="off", timeout_s=2.0).to(
