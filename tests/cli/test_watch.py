@@ -112,6 +112,7 @@ def test_a_console_of_nonsense_is_refused_before_there_is_a_page(armland, tmp_pa
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_an_operator_s_log_is_flown_again(armland, tmp_path) -> None:
     script = tmp_path / "mine.jsonl"
     script.write_text('{"tick": 1500, "do": "wind", "value": 2.0}\n{"tick": 3000, "do": "abort"}\n')

@@ -53,7 +53,7 @@ class FakePage:
         self.socket.close()
 
 
-def until(there, seconds: float = 5.0) -> bool:
+def until(there, seconds: float = 15.0) -> bool:
     """Wait until something is so; whether it came to be."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:

@@ -8,7 +8,8 @@ import pytest
 
 from armland.console.recording import Recording
 from armland.console.replay import WHOLE, WINDOW_S, Replay
-from armland.runtime.log import Log
+from armland.experiments.episode import fly
+from armland.runtime.log import Log, read_log
 
 
 class Served:
@@ -144,6 +145,22 @@ def test_two_flights_stand_in_one_scene_and_are_subtracted(server, recording, la
         words = [e.words for e in made.replay.events]
         assert "carry [1]" in words
         assert "carry [2]" in words
+    finally:
+        made.stop()
+
+
+@pytest.mark.slow
+def test_an_experiment_on_the_hinge_is_shown(server, fake_page, wait_until, paper, tmp_path) -> None:
+    file = tmp_path / "E1.mcap"
+    fly(paper, "E1", 1, log=file)
+    made = Served(server, [Recording(read_log(file), file)], fake_page(server))
+    try:
+        made.page.set(made.control("time (s)"), 4.0)
+        assert wait_until(lambda: "4.000 s" in made.replay._status.content)
+        ((_, stage),) = made.replay._stages
+        assert stage._eye is None
+        assert stage._disc is None
+        assert wait_until(lambda: stage._path.visible)
     finally:
         made.stop()
 

@@ -52,6 +52,7 @@ def pilot(flights, tmp_path):
     assert not made._thread.is_alive()
 
 
+@pytest.mark.slow
 def test_flies_as_the_command_does(pilot, wait_until, landed) -> None:
     pilot.start(Choices(), [])
     assert wait_until(lambda: pilot.ended is not None, SECONDS)
@@ -110,6 +111,7 @@ def test_paused_it_goes_tick_by_tick(pilot, wait_until) -> None:
     assert wait_until(lambda: [m.tick for m in pilot.flight.done] == [11], SECONDS)
 
 
+@pytest.mark.slow
 def test_what_pages_need_is_left_behind_whole(pilot, wait_until, landed) -> None:
     pilot.start(Choices(), [])
     assert wait_until(lambda: pilot.ended is not None, SECONDS)
@@ -122,6 +124,7 @@ def test_what_pages_need_is_left_behind_whole(pilot, wait_until, landed) -> None
     assert now.signals.shape == (25,)
 
 
+@pytest.mark.slow
 def test_another_flight_takes_the_place_of_the_one_under_way(pilot, wait_until) -> None:
     pilot.pace.set(1.0)
     pilot.start(Choices(seed=1), [])
@@ -135,6 +138,7 @@ def test_another_flight_takes_the_place_of_the_one_under_way(pilot, wait_until) 
     assert read_log(pilot.log).metadata["seed"] == "2"
 
 
+@pytest.mark.slow
 def test_what_was_asked_for_while_it_was_prepared_is_flown_alone(pilot, flights, wait_until) -> None:
     flights.gate.clear()
     for seed in (1, 2, 3):
@@ -164,6 +168,7 @@ def test_a_flight_that_cannot_be_is_said_and_the_next_one_flies(pilot, flights, 
     assert wait_until(lambda: pilot.ended is not None and pilot.ended.success, SECONDS)
 
 
+@pytest.mark.slow
 def test_given_up_it_leaves_what_was_recorded(pilot, wait_until, tmp_path) -> None:
     pilot.pace.set(4.0)
     pilot.start(Choices(), [])

@@ -120,6 +120,7 @@ def test_held_and_let_go_it_lands_all_the_same(hand) -> None:
     assert v.max() < 0.02
 
 
+@pytest.mark.slow
 def test_while_it_is_held_the_supervisor_watches_as_before(hand) -> None:
     failure = {"fault": {"kind": "link_loss"}}
     episode = flown_by(hand(told((8000, "hold"), (8500, "fault", failure))))
@@ -136,6 +137,7 @@ def test_an_abort_ends_where_the_kind_of_phase_asks(hand, tick: int, end: str) -
     assert episode.ticks["mission"]["phase"][tick] != episode.ticks["mission"]["phase"][tick - 1]
 
 
+@pytest.mark.slow
 def test_an_abort_while_held_ends_as_one_of_the_phase_before(hand) -> None:
     assert phases(flown_by(hand(told((8000, "hold"), (8600, "abort")))))[-3:] == [
         "carry",
@@ -144,6 +146,7 @@ def test_an_abort_while_held_ends_as_one_of_the_phase_before(hand) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_a_fault_thrown_in_for_a_phase_waits_for_it(hand) -> None:
     failure = {"fault": {"kind": "link_loss", "phase": "carry", "after_s": 0.2}}
     episode = flown_by(hand(told((1000, "fault", failure))))
@@ -195,6 +198,7 @@ def test_held_twice_is_refused(hand) -> None:
         flown_by(port)
 
 
+@pytest.mark.slow
 def test_a_path_by_the_clock_is_not_held_but_aborted(paper_scenario) -> None:
     port = Hand(prepare(paper_scenario, "E1", 1), told((3000, "hold")))
     with pytest.raises(ConfigurationError, match="follows a path by the clock"):
@@ -254,6 +258,7 @@ def test_a_recorded_wind_is_not_steered(landing_scenario, tmp_path) -> None:
         port.do(asked("wind", 3.0))
 
 
+@pytest.mark.slow
 def test_there_is_room_for_a_hundred_faults(hand) -> None:
     port = hand()
     for _ in range(100):

@@ -65,6 +65,7 @@ def console(**given: Any) -> None:
     from armland.console.live.pilot import Pilot
     from armland.console.page.server import check_port
     from armland.experiments.episode import Flight, prepare
+    from armland.mission.plan import Plan
     from armland.mission.registry import mission_named
 
     hinged = mission_named(given["mission"]).start == "hinged"
@@ -74,11 +75,19 @@ def console(**given: Any) -> None:
     first = chosen({"mission": given["mission"], "scenario": own, **named, **numbers})
     settings = tuple(given["settings"] or ())
 
+    plans: dict[Choices, Plan] = {}
+
     def prepared(choices: Choices) -> Flight:
         options_of = {**given, **choices.given(settings)}
-        scenario = loaded_for(choices.mission, options_of)
+        scenario, same = loaded_for(choices.mission, options_of), choices.model_copy(update={"seed": 0})
         ready(joints_of(scenario))
-        return prepare(scenario, choices.mission, law=options_of["law"])
+        known = plans.get(same)
+        flight = prepare(scenario, choices.mission, law=options_of["law"], known=known)
+        plans.clear()
+        if not flight.moved:
+            # Another seed needs no other plan.
+            plans[same] = flight.plan
+        return flight
 
     check_port(given["host"], given["port"])
     # What is wrong with the first choice is told before there is a page.

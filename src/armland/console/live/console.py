@@ -165,8 +165,9 @@ class Console:
         recent = [words for at, words in self._said if time.monotonic() - at < ERROR_S]
         _put(self._errors, lines_html(recent, warning=True))
         if self._flight is None or now is None:
+            ended = self._pilot.ended
             words = "preparing the flight" if self._pilot.preparing else "press start, or Enter"
-            _put(self._status, lines_html([words]))
+            _put(self._status, lines_html([words, *([f"✗ {ended.words}"] if ended is not None else [])]))
             return
         plan, tick = self._flight.flight.plan, now.tick[0]
         _put(self._status, self._status_html(now))

@@ -57,7 +57,7 @@ class PageServer:
             self.stop()
             raise in_use(host, port)
         self.viser.on_client_connect(self._greet)
-        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0", "::") else host
+        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0", "::") else f"[{host}]" if ":" in host else host
         query = "" if token is None else f"/?token={token}"
         self.address = f"http://{shown}:{self.viser.get_port()}{query}"
         """Where the page is."""
