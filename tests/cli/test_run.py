@@ -164,7 +164,12 @@ def test_campaign_writes_its_outcomes_and_no_log(armland, tmp_path):
     done = armland(*flights)
     assert "0 of 2 landings succeed" in done.out
     assert "2 failed (seed 5, 6): still in phase" in done.out
-    assert files(tmp_path / "out") == ["campaign.json", "campaign.sqlite", "landing_campaign.pdf", "landing_campaign.png"]
+    assert files(tmp_path / "out") == [
+        "campaign.json",
+        "campaign.sqlite",
+        "landing_campaign.pdf",
+        "landing_campaign.png",
+    ]
 
 
 def test_fault_is_injected_from_the_command_line(armland, tmp_path):
