@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from armland.experiments.campaign.crews import threads
+from armland.errors import ConfigurationError, StoreError
+from armland.experiments.campaign.crews.threads import threads
 from armland.experiments.campaign.engine import campaign_of, conduct
 from armland.experiments.campaign.store import Store
 
@@ -22,7 +23,7 @@ overrides.run.duration_s = 2.0
 air.wind_mps = {sweep = [3.0, 5.0]}
 uav.extra_mass_kg = {uniform = [0.0, 0.05]}
 """
-KILLS, RUNS = 20, 60
+KILLS, RUNS = 20, 100
 
 
 def stored(file):
@@ -33,6 +34,14 @@ def stored(file):
         for name in ("wall_s", "real_time_factor"):
             row.result.pop(name, None)
     return rows
+
+
+def count(file):
+    try:
+        return len(stored(file))
+    except (ConfigurationError, StoreError):
+        # It is being made.
+        return 0
 
 
 def workers_of(parent):
@@ -68,9 +77,12 @@ def test_twenty_kills_and_dead_workers_leave_the_store_of_an_unbroken_campaign(t
     path = {"PYTHONPATH": os.pathsep.join(os.path.abspath(p) for p in sys.path if p)}
     for k in range(KILLS):
         with subprocess.Popen(call, cwd=tmp_path, env=os.environ | path, stderr=subprocess.DEVNULL) as process:
-            end = time.monotonic() + 3.0 + 5.0 * moments.random()
-            while time.monotonic() < end and process.poll() is None:
+            # Every other time while it starts, else when rows come in.
+            begun = time.monotonic()
+            while k % 2 and count(file) <= kept and process.poll() is None:
+                assert time.monotonic() < begun + 200.0
                 time.sleep(0.05)
+            time.sleep((0.5 if k % 2 else 5.0) * moments.random())
             workers = workers_of(process.pid)
             if k % 4 == 3 and workers:
                 # A worker first: the campaign goes on without it.
@@ -83,7 +95,7 @@ def test_twenty_kills_and_dead_workers_leave_the_store_of_an_unbroken_campaign(t
         while any(alive(w) for w in workers):
             assert time.monotonic() < end, "a worker has outlived its parent"
             time.sleep(0.05)
-        now = len(stored(file)) if file.exists() else 0
+        now = count(file)
         assert now >= kept
         kept = now
     subprocess.run([*call, "--no-figures"], cwd=tmp_path, env=os.environ | path, check=True, capture_output=True)
