@@ -181,6 +181,10 @@ def refusal(call: str) -> str | None:
     command = get_command(app).commands.get(words[0])  # type: ignore[attr-defined]
     if command is None:
         return f"no command {words[0]}"
+    if parts := getattr(command, "commands", None):
+        # `armland campaign FILE` is `armland campaign fly FILE`.
+        words = words[1:] if words[1:2] and words[1] in parts else ["fly", *words[1:]]
+        command = parts[words[0]]
     try:
         given = command.make_parser(typer.Context(command)).parse_args(words[1:])[0]
         if (mission := given.get("mission") or "NAME") not in ("NAME", "MISSION"):
@@ -198,7 +202,9 @@ def test_commands_exist_with_their_options(page: Path) -> None:
 
 
 def test_examples_in_the_help_exist_with_their_options() -> None:
-    shown = [c for command in app.registered_commands for c in calls(command.epilog or "")]
+    groups = [group.typer_instance.registered_commands for group in app.registered_groups]
+    commands = [*app.registered_commands, *(command for group in groups for command in group)]
+    shown = [c for command in commands for c in calls(command.epilog or "")]
     assert len(shown) > 10
     assert {c: why for c in shown if (why := refusal(c.partition(" | ")[0]))} == {}
 
@@ -210,6 +216,9 @@ def test_examples_in_the_help_exist_with_their_options() -> None:
         "armland land --sed 7",
         "armland land --seed",
         "armland run hovering",
+        "armland campaign examples/wind_study.toml --runs many",
+        "armland campaign examples/no_study.toml",
+        "armland campaign replay out/campaign/study.sqlite",
         "armland land --set place.catched_m='[0.6, 0.0, 0.86]'",
         "armland land --law examples/no_law.py:my_law",
     ],

@@ -10,7 +10,7 @@ import time
 import pytest
 
 from armland.cli.commands import campaign as module
-from armland.experiments.campaign.crews import threads
+from armland.experiments.campaign.crews.threads import threads
 from armland.experiments.campaign.store import Store
 
 STUDY = """

@@ -10,9 +10,9 @@ import time
 import pytest
 
 from armland.errors import ConfigurationError, StoreError
-from armland.experiments.campaign.crews import threads
+from armland.experiments.campaign.crews.processes import processes
+from armland.experiments.campaign.crews.threads import threads
 from armland.experiments.campaign.engine import conduct
-from armland.experiments.campaign.processes import processes
 from armland.experiments.campaign.store import Store
 
 WIND = "[parameters]\nair.wind_mps = {uniform = [0.0, 3.0]}\n"
@@ -34,7 +34,7 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 import fakes
 from armland.experiments.campaign.engine import campaign_of, conduct
-from armland.experiments.campaign.processes import processes
+from armland.experiments.campaign.crews.processes import processes
 from armland.experiments.campaign.store import Store
 campaign = campaign_of(json.loads(sys.argv[3]))
 print("ready", flush=True)

@@ -5,7 +5,7 @@ import sqlite3
 import pytest
 
 from armland.errors import ConfigurationError
-from armland.experiments.campaign.crews import threads
+from armland.experiments.campaign.crews.threads import threads
 from armland.experiments.campaign.engine import Campaign, conduct
 from armland.experiments.campaign.replay import replay
 from armland.experiments.campaign.rows import Job

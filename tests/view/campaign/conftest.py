@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
+from armland.experiments.campaign.answers.report import report
 from armland.experiments.campaign.description import Description
 from armland.experiments.campaign.design import Schedule
 from armland.experiments.campaign.engine import Campaign
-from armland.experiments.campaign.report import report
 from armland.experiments.campaign.rows import Job, Row
 from armland.experiments.campaign.store import Store
 from armland.experiments.campaign.versions import versions

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from armland.experiments.campaign.sensitivity import Sensitivity
+from armland.experiments.campaign.answers.sensitivity import Sensitivity
 from armland.view.campaign.pictures import as_source, pictures, rates, slices, spreads, success_map
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from armland.experiments.campaign.sensitivity import Influence
+from armland.experiments.campaign.answers.sensitivity import Influence
 from armland.view.campaign.terminal import fails_with, headline, interval_of, percent, print_report
 
 

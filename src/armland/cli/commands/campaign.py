@@ -13,7 +13,7 @@ from armland.cli.exits import EXPLAINED, attempted, say
 from armland.cli.results import Results, Work, publish
 
 if TYPE_CHECKING:
-    from armland.experiments.campaign.crews import Crew
+    from armland.experiments.campaign.crews.threads import Crew
     from armland.experiments.campaign.engine import Campaign
 
 FLY_EPILOG = """**Examples**
@@ -124,17 +124,17 @@ def _campaign(given: dict[str, Any], store: Path) -> "Campaign":
 
 def _crew(jobs: int | None, address: str | None) -> "Crew":
     if address is not None:
-        from armland.experiments.campaign.cluster import cluster
+        from armland.experiments.campaign.crews.cluster import cluster
 
         return cluster(address, jobs)
-    from armland.experiments.campaign.processes import processes
+    from armland.experiments.campaign.crews.processes import processes
 
     return processes(jobs or os.cpu_count() or 1)
 
 
 def _report(given: dict[str, Any], file: Path, out: Path) -> None:
     from armland.errors import ConfigurationError
-    from armland.experiments.campaign.report import report
+    from armland.experiments.campaign.answers.report import report
     from armland.experiments.campaign.store import Store
     from armland.view.campaign.files import write_csv, write_parquet
     from armland.view.campaign.page import page

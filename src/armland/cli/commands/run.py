@@ -220,7 +220,7 @@ def _film(log: "Log", folder: Path, console: Console) -> None:
 
 
 def _campaign(flight: "Flight", mission: str, given: dict[str, Any], console: Console) -> NoReturn:
-    from armland.experiments.campaign.crews import threads
+    from armland.experiments.campaign.crews.threads import threads
     from armland.experiments.campaign.description import Description
     from armland.experiments.campaign.engine import Campaign, conduct
     from armland.experiments.campaign.rows import Job

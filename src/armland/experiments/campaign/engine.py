@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from armland.errors import ConfigurationError
-from armland.experiments.campaign.crews import Crew, Work, threads
+from armland.experiments.campaign.crews.threads import Crew, Work, threads
 from armland.experiments.campaign.description import Description
 from armland.experiments.campaign.design import Schedule
 from armland.experiments.campaign.flight import attempt

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from armland.errors import ConfigurationError
-from armland.experiments.campaign.table import Table
+from armland.experiments.campaign.answers.table import Table
 
 
 def columns(table: Table) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined
 
-from armland.experiments.campaign.report import QUANTILES, Report, short
-from armland.experiments.campaign.table import Table
+from armland.experiments.campaign.answers.report import QUANTILES, Report, short
+from armland.experiments.campaign.answers.table import Table
 from armland.experiments.margins.flights import shortened
 from armland.view.campaign.pictures import as_source, pictures
 from armland.view.campaign.terminal import fails_with, headline, interval_of, percent
@@ -17,7 +17,8 @@ MOST_POINTS = 500
 def page(report: Report, table: Table, store: Path) -> str:
     """The page as text; `store` is named in the commands that fly the worst flights again."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters |= {"percent": percent, "short": lambda x: f"{x:.3g}", "value": short, "brief": shortened}
+    environment.filters["percent"], environment.filters["value"] = percent, short
+    environment.filters["short"], environment.filters["brief"] = (lambda x: f"{x:.3g}"), shortened
     template = environment.from_string((files("armland") / "view" / "campaign" / "page.html").read_text("utf-8"))
     return template.render(
         report=report,

@@ -8,10 +8,10 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.figure import Figure
 
-from armland.experiments.campaign.report import Report, mapped
-from armland.experiments.campaign.sensitivity import as_numbers
+from armland.experiments.campaign.answers.report import Report, mapped
+from armland.experiments.campaign.answers.sensitivity import as_numbers
+from armland.experiments.campaign.answers.table import Table
 from armland.experiments.campaign.summary import FIGURES
-from armland.experiments.campaign.table import Table
 from armland.view.campaign.terminal import interval_of
 from armland.view.figures.canvas import paper_style, sheet
 

@@ -5,8 +5,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from armland.experiments.campaign.report import QUANTILES, PointReport, Report, short
-from armland.experiments.campaign.sensitivity import Influence
+from armland.experiments.campaign.answers.report import QUANTILES, PointReport, Report, short
+from armland.experiments.campaign.answers.sensitivity import Influence
 from armland.experiments.margins.flights import shortened
 from armland.view.tables.verdicts import mark, terminal, titled
 

@@ -1,8 +1,8 @@
 """Who flies: processes, threads of this process, or a cluster. Each takes tasks and gives rows as they are done.
 
-Processes are the rule. The compiled loop runs without Python's lock, but a flight's start, judging and digest hold it: half of the
-processor's time where each flight has a scenario of its own. So threads gain little beyond the second, and a crash takes all of them.
-Threads need no start, which is as long as ten flights: they fly a few seeds.
+Processes are the rule. The compiled loop runs without Python's lock, but a flight's start and judging hold it: half of the
+processor's time where each flight has a scenario of its own. So any number of threads is twice as fast at most, and a crash takes all.
+Threads need no start, which is as long as four flights: they fly a few seeds.
 """
 
 from collections.abc import Callable, Iterator

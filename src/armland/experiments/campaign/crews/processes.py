@@ -9,9 +9,9 @@ from functools import partial
 from multiprocessing.connection import Connection, Pipe, wait
 
 from armland.errors import ClusterError
-from armland.experiments.campaign.crews import Crew, Work
+from armland.experiments.campaign.crews.threads import Crew, Work
+from armland.experiments.campaign.crews.worker import READY
 from armland.experiments.campaign.rows import Job, Row, Task, lost
-from armland.experiments.campaign.worker import READY
 
 FRUGAL = {
     "MALLOC_MMAP_THRESHOLD_": "262144",
@@ -39,7 +39,7 @@ class _Worker:
             # The other process finds what this one finds, wherever it was imported from.
             path = os.pathsep.join(p for p in sys.path if p)
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "armland.experiments.campaign.worker", str(other.fileno())],
+                [sys.executable, "-m", "armland.experiments.campaign.crews.worker", str(other.fileno())],
                 stdin=subprocess.DEVNULL,
                 pass_fds=[other.fileno()],
                 env={**os.environ, **FRUGAL, "PYTHONPATH": path},

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
-from armland.experiments.campaign.crews import threads
+from armland.experiments.campaign.answers.report import mapped, point_names, report
+from armland.experiments.campaign.crews.threads import threads
 from armland.experiments.campaign.engine import conduct
-from armland.experiments.campaign.report import mapped, point_names, report
 from armland.experiments.campaign.store import Store
 
 SWEPT = "[parameters]\nair.wind_mps = {sweep = [0.0, 6.0]}\nuav.extra_mass_kg = {uniform = [0.0, 0.1]}\n"

@@ -5,14 +5,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.stats import binomtest
 
+from armland.experiments.campaign.answers.paired import Pairing, compare
+from armland.experiments.campaign.answers.sensitivity import Sensitivity, as_numbers, sensitivity
+from armland.experiments.campaign.answers.table import Table, tabulate
 from armland.experiments.campaign.engine import Campaign, campaign_of
-from armland.experiments.campaign.paired import Pairing, compare
 from armland.experiments.campaign.rows import BROKE, KILLED, REFUSED
-from armland.experiments.campaign.sensitivity import Sensitivity, as_numbers, sensitivity
 from armland.experiments.campaign.stopping import Interval, Watch
 from armland.experiments.campaign.store import Store
 from armland.experiments.campaign.summary import FIGURES
-from armland.experiments.campaign.table import Table, tabulate
 
 QUANTILES = (0.05, 0.5, 0.95, 0.99)
 WORST = 10

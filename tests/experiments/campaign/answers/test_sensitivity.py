@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from armland.experiments.campaign.sensitivity import classed, explained, sensitivity, trend
-from armland.experiments.campaign.table import Table
+from armland.experiments.campaign.answers.sensitivity import classed, explained, sensitivity, trend
+from armland.experiments.campaign.answers.table import Table
 
 
 def table(values, success):

@@ -5,7 +5,7 @@ import socket
 import pytest
 
 from armland.errors import ConfigurationError
-from armland.experiments.campaign.cluster import cluster
+from armland.experiments.campaign.crews.cluster import cluster
 from armland.experiments.campaign.rows import KILLED, Job, Task
 
 pytest.importorskip("ray", reason="Ray is an extra: armland[cluster]")

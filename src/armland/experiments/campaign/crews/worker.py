@@ -1,4 +1,4 @@
-"""A process that flies: `python -m armland.experiments.campaign.worker NUMBER`, with the number of an open pipe to who started it.
+"""A process that flies: `python -m armland.experiments.campaign.crews.worker NUMBER`, the number of an open pipe to who started it.
 
 It takes what to do, then one task at a time, and gives back the row of each. When the other end of the pipe is closed, by whatever, the
 process ends at once, in the middle of a flight, too.

@@ -9,7 +9,7 @@ import time
 import pytest
 
 from armland.errors import ClusterError
-from armland.experiments.campaign.processes import processes
+from armland.experiments.campaign.crews.processes import processes
 from armland.experiments.campaign.rows import KILLED, Job, Task
 
 
@@ -51,7 +51,7 @@ PARENT = """
 import sys
 sys.path.insert(0, sys.argv[1])
 import fakes
-from armland.experiments.campaign.processes import processes
+from armland.experiments.campaign.crews.processes import processes
 from armland.experiments.campaign.rows import Job, Task
 list(processes(2)(fakes.endless, Job("", sys.argv[2]), iter([Task(k, 0, k, {}) for k in range(4)])))
 """

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from armland.experiments.campaign.answers.table import cause, tabulate
 from armland.experiments.campaign.rows import Row
 from armland.experiments.campaign.store import Store
-from armland.experiments.campaign.table import cause, tabulate
 
 
 @pytest.fixture

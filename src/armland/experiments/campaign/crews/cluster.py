@@ -12,7 +12,7 @@ from itertools import islice
 from typing import Any
 
 from armland.errors import ClusterError, ConfigurationError
-from armland.experiments.campaign.crews import Crew, Work
+from armland.experiments.campaign.crews.threads import Crew, Work
 from armland.experiments.campaign.rows import Job, Row, Task, lost
 from armland.experiments.campaign.versions import versions
 

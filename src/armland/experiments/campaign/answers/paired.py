@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import binomtest, bootstrap, norm
 
+from armland.experiments.campaign.answers.table import Table
 from armland.experiments.campaign.summary import FIGURES
-from armland.experiments.campaign.table import Table
 from armland.rotations import Array
 
 LEAST = 8

@@ -2,7 +2,7 @@
 
 import time
 
-from armland.experiments.campaign.crews import threads
+from armland.experiments.campaign.crews.threads import threads
 from armland.experiments.campaign.rows import Job, Task
 
 

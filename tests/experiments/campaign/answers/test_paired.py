@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from armland.experiments.campaign.paired import compare, rate_difference
-from armland.experiments.campaign.table import Table
+from armland.experiments.campaign.answers.paired import compare, rate_difference
+from armland.experiments.campaign.answers.table import Table
 
 
 def table(success, figure=None, seeds=None):

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2_contingency, spearmanr
 from scipy.stats.contingency import association
 
-from armland.experiments.campaign.table import Table
+from armland.experiments.campaign.answers.table import Table
 from armland.rotations import Array
 
 CLASSES = 8
