@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from armland.cli import options
 from armland.cli.console import diagnostics
@@ -17,6 +17,9 @@ REPLAY_EPILOG = """**Examples**
 
 Exit code: 0 when it is stopped by Ctrl-C, 2 for a log that cannot be read or a port in use.
 """
+
+if TYPE_CHECKING:
+    from armland.console.live.choices import Choices
 
 CONSOLE_EPILOG = """**Examples**
 
@@ -60,19 +63,14 @@ def console(**given: Any) -> None:
     from armland.cli.commands.arm import joints_of
     from armland.cli.commands.run import loaded_for
     from armland.cli.console import ready
-    from armland.console.live.choices import Choices, chosen
+    from armland.console.live.choices import Choices
     from armland.console.live.console import Console
     from armland.console.live.pilot import Pilot
     from armland.console.page.server import check_port
     from armland.experiments.episode import Flight, prepare
     from armland.mission.plan import Plan
-    from armland.mission.registry import mission_named
 
-    hinged = mission_named(given["mission"]).start == "hinged"
-    named = {name: given[name] or "" for name in ("arm", "ee", "uav", "law", "sea")}
-    own = given["scenario"] or ("paper" if hinged else "landing")
-    numbers = {"seed": 1 if given["seed"] is None else given["seed"], "wind": given["wind"] or 0.0}
-    first = chosen({"mission": given["mission"], "scenario": own, **named, **numbers})
+    first = _first_choice(given)
     settings = tuple(given["settings"] or ())
 
     plans: dict[Choices, Plan] = {}
@@ -129,6 +127,18 @@ def replay(**given: Any) -> None:
         pass
     finally:
         server.stop()
+
+
+def _first_choice(given: dict[str, Any]) -> "Choices":
+    # What the command line says of the first flight, as the page has it.
+    from armland.console.live.choices import chosen
+    from armland.mission.registry import mission_named
+
+    hinged = mission_named(given["mission"]).start == "hinged"
+    named = {name: given[name] or "" for name in ("arm", "ee", "uav", "law", "sea")}
+    own = given["scenario"] or ("paper" if hinged else "landing")
+    numbers = {"seed": 1 if given["seed"] is None else given["seed"], "wind": given["wind"] or 0.0}
+    return chosen({"mission": given["mission"], "scenario": own, **named, **numbers})
 
 
 def _serve(given: dict[str, Any], title: str, refused: Callable[[str], None] | None = None) -> Any:
