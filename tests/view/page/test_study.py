@@ -1,6 +1,6 @@
 import pytest
 
-from armland.experiments.campaign import summarise
+from armland.experiments.campaign.summary import summarise
 from armland.experiments.episode import fly, prepare
 from armland.experiments.judge.figures import bounds
 from armland.runtime.log import Log

@@ -5,7 +5,7 @@ from functools import partial
 from typing import Any
 
 from armland import __version__
-from armland.experiments.campaign import Row, Summary
+from armland.experiments.campaign.summary import Row, Summary
 from armland.experiments.episode import Flight
 from armland.experiments.paper import UNBOUNDED
 from armland.runtime.log import Log
