@@ -15,6 +15,7 @@ from typer.main import get_command
 from armland.cli.app import app
 from armland.cli.options import load
 from armland.errors import ArmlandError
+from armland.experiments.campaign.description import read_description
 from armland.experiments.judge import judgement
 from armland.mission import registry
 from armland.records import MESSAGES
@@ -149,6 +150,8 @@ def test_files_of_pages_are_read(page: Path, workplace, armland) -> None:
             (workplace / "own.toml").write_text(text, encoding="utf-8")
             if "base =" in text:
                 assert load_scenario(workplace / "own.toml").title
+            elif "[parameters]" in text:
+                assert read_description(workplace / "own.toml").parameters
             else:
                 assert armland("uav", "own.toml").code == 0
 

@@ -35,7 +35,7 @@ def test_help_of_the_whole_has_examples(armland) -> None:
 @pytest.mark.parametrize(
     ("shell", "words", "offered"),
     [
-        ("bash", "armland re", {"reach", "render", "report"}),
+        ("bash", "armland re", {"reach", "render", "replay", "report"}),
         ("bash", "armland land --wind", {"--wind", "--wind-trace"}),
         ("zsh", "armland takeoff-", {"takeoff-weight"}),
         ("fish", "armland doc", {"doctor"}),

@@ -229,6 +229,7 @@ app = typer.Typer(
     cls=_Default,
     no_args_is_help=True,
     rich_markup_mode="markdown",
+    epilog=FLY_EPILOG,
     help="Fly a campaign: `armland campaign FILE` answers how often a mission succeeds, how well, and what that depends on.",
 )
 for command in (fly, report, replay):
