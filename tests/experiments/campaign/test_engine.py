@@ -155,6 +155,8 @@ def test_a_scenario_whose_files_have_changed_is_refused(fakes, made_up, tmp_path
 def test_comments_of_a_scenario_fly_nothing(fakes, made_up, tmp_path):
     conducted(made_up(5, scenario='{"values": {}, "_text": "# a"}'), tmp_path / "a.sqlite", fakes.quick)
     conducted(made_up(5, scenario='{"values": {}, "_text": "# b"}'), tmp_path / "a.sqlite", fakes.quick)
+    with Store(tmp_path / "a.sqlite") as store:
+        assert len(list(store.rows())) == 5
 
 
 def test_a_hypercube_does_not_grow(fakes, made_up, tmp_path):

@@ -7,7 +7,6 @@ from typing import Any
 from armland import __version__
 from armland.experiments.campaign.summary import Row, Summary
 from armland.experiments.episode import Flight
-from armland.experiments.paper import UNBOUNDED
 from armland.runtime.log import Log
 from armland.runtime.recorder import SCENARIO_NAME
 from armland.scenario import Scenario
@@ -24,7 +23,7 @@ from armland.view.page.pictures import drawing
 from armland.view.page.sheet import Section, Sheet, Verdict
 from armland.view.tables.campaign import alike
 from armland.view.tables.flight import GROUPS, LOADS
-from armland.view.tables.verdicts import cell
+from armland.view.tables.verdicts import bound_in_words, cell
 
 MOST_SEEDS = 12
 """Seeds of one failure that are named."""
@@ -195,15 +194,7 @@ def _claims_verdict(verdicts: Sequence[Mapping[str, Any]]) -> Verdict:
 def _claims(caption: str, verdicts: Sequence[Mapping[str, Any]]) -> Grid:
     out = []
     for v in verdicts:
-        low, high = v["bound"]
-        bound = (
-            f"at least {low:.4g}"
-            if high >= UNBOUNDED
-            else f"at most {high:.4g}"
-            if low == 0.0
-            else f"{low:.4g} to {high:.4g}"
-        )
-        out.append((v["claim"].replace("`", ""), f"{v['value']:.4g}", bound, holds(v["holds"])))
+        out.append((v["claim"].replace("`", ""), f"{v['value']:.4g}", bound_in_words(*v["bound"]), holds(v["holds"])))
     return Grid(caption, ("claim", "found", "bound", "verdict"), out, left=(0, 3))
 
 

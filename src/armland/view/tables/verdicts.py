@@ -49,17 +49,16 @@ def cell(value: float | Sequence[float] | None, scale: float, form: str) -> str:
     return "/".join(form.format(scale * v) for v in values)
 
 
+def bound_in_words(low: float, high: float) -> str:
+    """The bound of a claim, from `low` to `high` in its own unit."""
+    if high >= UNBOUNDED:
+        return f"at least {low:.4g}"
+    return f"at most {high:.4g}" if low == 0.0 else f"{low:.4g} to {high:.4g}"
+
+
 def verdict_table(title: str, verdicts: Sequence[Mapping[str, Any]]) -> Table:
     """Claims, what was found, the bound, and whether it holds."""
     table = titled(title, "claim", "found", "bound", "", left=(0, 3))
     for v in verdicts:
-        low, high = v["bound"]
-        bound = (
-            f"at least {low:.4g}"
-            if high >= UNBOUNDED
-            else f"at most {high:.4g}"
-            if low == 0.0
-            else f"{low:.4g} to {high:.4g}"
-        )
-        table.add_row(Text(v["claim"]), f"{v['value']:.4g}", bound, mark(v["holds"]))
+        table.add_row(Text(v["claim"]), f"{v['value']:.4g}", bound_in_words(*v["bound"]), mark(v["holds"]))
     return table
