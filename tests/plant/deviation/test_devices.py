@@ -54,8 +54,9 @@ def test_link_is_late_by_that_many_ticks_and_never_early(told):
     assert other["down"] - plain["down"] == -4
     assert other["jitter_up"] == other["jitter_down"] == 7
     assert other["stamp"] == -3
-    early = told(link={"up_ms": -1000.0, "down_ms": -1000.0})["link"]
-    assert early["up"] == early["down"] == 0
+    for device, way in (("link", "up_ms"), ("link", "down_ms")):
+        with pytest.raises(ConfigurationError, match=rf"deviation.{device}.{way}: .* before it was sent; at least -"):
+            told(**{device: {way: -50.0}})
 
 
 @pytest.mark.parametrize(

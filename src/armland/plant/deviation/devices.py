@@ -70,7 +70,7 @@ def _on_board(values: Values, scenario: Scenario, told: Records) -> None:
 def _link(values: Values, scenario: Scenario, told: Records) -> None:
     rate = scenario.run.rate_hz
     for way in ("up", "down"):
-        told[way] = max(int(told[way][0]) + _ticks(value(values, f"link.{way}_ms"), rate), 0)
+        told[way] = _late(f"link.{way}_ms", int(told[way][0]), values, rate)
         told[f"jitter_{way}"] = _ticks(value(values, "link.jitter_ms"), rate)
         told[f"loss_{way}"] = value(values, "link.loss")
         longest = int(told[way][0] + told[f"jitter_{way}"][0])
@@ -89,9 +89,9 @@ def _camera(values: Values, scenario: Scenario, told: Records) -> None:
     told["lose"] = min(told["lose"][0] + value(values, "camera.lose"), 1.0)
     told["stay_lost"] = max(told["stay_lost"][0], told["lose"][0])
     told["outlier"], told["outlier_m"] = value(values, "camera.outlier"), value(values, "camera.outlier_m")
-    told["flip"], late = value(values, "camera.flip"), _ticks(value(values, "camera.delay_ms"), rate)
+    told["flip"] = value(values, "camera.flip")
     for name in ("delay_min", "delay_max"):
-        told[name] = max(int(told[name][0]) + late, 0)
+        told[name] = _late("camera.delay_ms", int(told[name][0]), values, rate)
     if told["delay_max"][0] * camera.rate_hz >= (QUEUE - 1) * rate:
         raise ConfigurationError(
             f"deviation.camera.delay_ms: images {1000 * int(told['delay_max'][0]) // rate} ms late; "
@@ -154,6 +154,18 @@ def _air(values: Values, scenario: Scenario, told: Records) -> None:
     area = rotor_count(scenario) * rotors.radius_m**2
     told["wash"] = value(values, "air.downwash") * min(DISCS_M2 / area, 1.0)
     told["moves"] |= bool(wind or gust or told["ground"][0])
+
+
+def _late(path: str, believed: int, values: Values, rate_hz: int) -> int:
+    # Ticks of a delay that is believed to be so many.
+    ticks = believed + _ticks(value(values, path), rate_hz)
+    if ticks < 0:
+        milliseconds = 1000 / rate_hz
+        raise ConfigurationError(
+            f"deviation.{path}: {value(values, path):.4g} ms of a delay believed to be {believed * milliseconds:.4g} ms arrives "
+            f"{-ticks * milliseconds:.4g} ms before it was sent; at least {-believed * milliseconds:.4g} ms is possible"
+        )
+    return ticks
 
 
 def _ticks(milliseconds: float, rate_hz: int) -> int:
