@@ -178,7 +178,7 @@ def _flight_plan(scenario: Scenario, mission: Mission, law: str | None, trial: b
     # The published laws need the weight that the rotors leave from the model; the exact ones know it.
     switches = Experiment(acceleration="implied", support="none" if chosen.law >= EXACT else "model")
     ends = _targets(mission, phases, scenario, launch)
-    told = tell(Telling(scenario, arm, flies, arm.qd_max, UPRIGHT, ends, switches, chosen, mission.start, launch))
+    told = tell(Telling(scenario, arm, flies, arm.qd_max, UPRIGHT, ends, switches, chosen, mission.start, launch, home))
     return Plan(
         mission=mission,
         scenario=scenario,

@@ -20,7 +20,7 @@ from armland.mission.feasibility.path import room
 from armland.mission.feasibility.weight import hover_max
 from armland.mission.reference import view
 from armland.mission.reference.guided import SEEN_S
-from armland.mission.supervisor.faults import PLUNGES_MPS
+from armland.mission.supervisor.faults import PLUNGES_MPS, SINKS_MPS
 from armland.mission.table.mission import Start
 from armland.mission.uav import LEANT_MPS2, RECKONED_S
 from armland.models.airframe.lift import lift_range
@@ -94,6 +94,8 @@ class Telling(NamedTuple):
     """Of the table of laws."""
     start: Start
     launch: Launch | None
+    home: Array | None = None
+    """Pose (n,), rad, from which the arm approaches."""
 
     @property
     def hinged(self) -> bool:
@@ -119,7 +121,7 @@ def tell(t: Telling) -> Records:
     _uav(told["act"]["uav"], t)
     _law(told["act"]["law"], t)
     c = t.scenario.control
-    told["act"]["realisation"] = realisation_told(t.scenario, t.arm, t.R_d)
+    told["act"]["realisation"] = realisation_told(t.scenario, t.arm, t.R_d, t.home)
     k, d = c.free_rad_s**2, 2.0 * c.free_damping * c.free_rad_s
     told["act"]["stiffness"], told["act"]["damping"] = k, d
     told["act"]["lean_stiffness"], told["act"]["lean_damping"] = k, d
@@ -174,7 +176,8 @@ def _decide(p: Records, t: Telling) -> None:
     watch["hinge_max"], watch["tilt_max"] = limits.hinge_force_share * s.magnet.rating_n, np.deg2rad(limits.tilt_deg)
     _, static = lift_range(s)
     # One that flies on with all its thrust need not hover.
-    watch["plunges"] = PLUNGES_MPS + expected(s).sinking
+    air = expected(s).sinking
+    watch["sinks"], watch["plunges"] = SINKS_MPS + air, PLUNGES_MPS + air
     watch["thrust_max"] = s.control.thrust.ceiling * static
     watch["hover_max"] = np.inf if s.place.fly_on else hover_max(s, expected(s).mean > 0.0)
     watch["joint_margin"], watch["sigma_min"] = limits.joint_margin_rad, limits.sigma_min

@@ -42,6 +42,14 @@ SPARE_RAD, MOST_RAD = 0.05, 0.52
 """Lean that is left to move the UAV while it holds against the strongest gust; largest that an autopilot of this kind is set to:
 AR.Drone, `euler_angle_max`."""
 
+ROOMY = {"catch_m": (0.56, 0.0, 0.93), "put_down_m": (0.70, 0.0, 0.60)}
+"""Places in wind and on a deck that moves, m, D: 0.33 m from catch to cradle and not 0.16, since air that sinks takes a UAV down by
+up to 0.25 m while its rotors give all that they can."""
+
+POSTURE_RAD_S = 6.0
+"""Bandwidth of the arm's null space where it follows a UAV in gusts, or is shaken by a deck: held by friction alone, its elbow creeps
+aside and into the cradle within a minute."""
+
 
 class Wind(NamedTuple):
     """Wind at the catch as it is expected."""
@@ -74,7 +82,7 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
     """What is done differently before a flight in wind or above a deck that moves, by dotted key; nothing in calm.
 
     The UAV is brought to above the arm, higher by what a gust takes it down before its own hover answers and by what a deck rises
-    before it is guided, and in wind it is let lean.
+    before it is guided, and in wind it is let lean. The arm's null space keeps its pose.
 
     Args:
         scenario: as it flies.
@@ -82,8 +90,9 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
     """
     wind, g, own = expected(scenario), float(np.linalg.norm(scenario.environment.gravity_mps2)), scenario.onboard.hover
     above = scenario.place.start_above_m + (RISES_MPS * FOUND_S if scenario.foretold_deck else 0.0)
+    posture = {"control.posture_rad_s": POSTURE_RAD_S}
     if wind.mean <= 0.0:
-        return {"place.start_above_m": above} if scenario.foretold_deck else {}
+        return {"place.start_above_m": above, **posture} if scenario.foretold_deck else {}
     rate = scenario.uav.drag_nspm / mass
     lean = min(wind.lean(rate / g, STRONGEST) + SPARE_RAD, MOST_RAD)
     down = GUST * rate * wind.sigma / (own.k_position * own.k_velocity + own.k_integral)
@@ -93,6 +102,7 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
         "run.duration_s": scenario.run.duration_s + longer,
         "place.start_above_m": above + down,
         "onboard.hover.tilt_max_rad": max(own.tilt_max_rad, lean),
+        **posture,
     }
 
 

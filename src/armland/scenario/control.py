@@ -79,6 +79,9 @@ class Control(Section):
     orientation_kd: of.Gain = key(7.0, "N·m per rad/s of the end effector")
     elbow_force_n: of.Force = key(5.0, "pull of the elbow field, downwards")
     null_space_damping_nms: of.Coefficient = key(2.0, "joint damping in N·m·s/rad, projected into the null space")
+    posture_rad_s: of.Bandwidth = key(
+        0.0, "bandwidth with which the null space returns to the pose from which the arm approaches; 0: it does not"
+    )
     range_margin_rad: of.Fraction = key(0.25, "distance to a joint's end at which the null space pushes back")
     range_stiffness_nm: of.Coefficient = key(20.0, "N·m per rad of that push")
     coriolis_feedforward: bool = key(False, "feed μ ẋ_d forward; the paper neglects it")

@@ -303,10 +303,15 @@ def test_speed_that_is_asked_for_has_its_limit_and_the_way_its_direction(directi
 
 @pytest.mark.parametrize(
     ("force", "tilt", "lift"),
-    [((0.0, 0.0, -50.0), 0.0, 1.4), ((0.0, 0.0, 50.0), 0.0, 7.0 * np.cos(0.61)), ((30.0, -40.0, 0.0), 0.61, None)],
+    [
+        ((0.0, 0.0, -50.0), 0.0, 1.4),
+        ((0.0, 0.0, 50.0), 0.0, 7.0),
+        ((30.0, -40.0, 0.0), 0.61, None),
+        ((30.0, -40.0, 50.0), 0.61, 7.0 * np.cos(0.61)),
+    ],
 )
 def test_force_is_cut_to_what_lift_and_tilt_allow(force, tilt, lift):
-    """Sideways the direction stays: 3 to −4; upwards there is always room for the whole tilt."""
+    """Sideways the direction stays: 3 to −4; upwards there is all thrust that the tilt leaves, and always room for the whole tilt."""
     found, _ = kept_at(a_d=force)
     assert np.arctan2(np.hypot(*found[:2]), found[2]) == pytest.approx(tilt, abs=1e-9)
     assert found[2] == pytest.approx(MASS * GRAVITY if lift is None else lift)

@@ -1,4 +1,4 @@
-"""Null-space behaviour of the arm: elbow pulled down, joints kept from their ends, damping; compiled.
+"""Null-space behaviour of the arm: elbow pulled down, joints kept from their ends, damping, a posture; compiled.
 
 | symbol | name | unit |
 |---|---|---|
@@ -62,7 +62,7 @@ def _push(depth: float, margin: float, stiffness: float) -> float:
 
 @njit(cache=True)
 def null_space_wish(q: Array, qd: Array, arm: Record, p: Record) -> Array:
-    """τ₀ (n,), N·m: both fields, and damping of the joints.
+    """τ₀ (n,), N·m: both fields, damping of the joints, and what draws them to a posture.
 
     Args:
         q: joint positions (n,), rad.
@@ -75,4 +75,16 @@ def null_space_wish(q: Array, qd: Array, arm: Record, p: Record) -> Array:
     range_field(q, p.q_min, p.q_max, p.range_margin, p.range_stiffness, tau)
     for i in range(q.shape[0]):
         tau[i] -= p.null_damping * qd[i]
+    if p.posture_rate > 0.0:
+        _posture(q, qd, arm, p, tau)
     return tau
+
+
+@njit(cache=True)
+def _posture(q: Array, qd: Array, arm: Record, p: Record, tau: Array) -> None:
+    # M (ω² (q₀ − q) − 2 ω φ̇): weighted by the inertia it is as fast in the null space of a heavy arm as of a light one.
+    n, rate = q.shape[0], p.posture_rate
+    for k in range(n):
+        back = rate * (rate * (p.posture[k] - q[k]) - 2.0 * qd[k])
+        for i in range(n):
+            tau[i] += arm.mass_matrix[i, k] * back

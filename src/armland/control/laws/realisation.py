@@ -38,6 +38,8 @@ def told_layout(joints: int) -> np.dtype:
             ("elbow", "i8"),
             ("elbow_force", "f8"),  # N
             ("null_damping", "f8"),  # N·m·s/rad
+            ("posture", "f8", (joints,)),  # rad, pose to which the null space is drawn
+            ("posture_rate", "f8"),  # rad/s, bandwidth of that
             ("range_margin", "f8"),  # rad
             ("range_stiffness", "f8"),  # N·m/rad
             ("q_min", "f8", (joints,)),  # rad
@@ -48,8 +50,14 @@ def told_layout(joints: int) -> np.dtype:
     )
 
 
-def told(scenario: Scenario, arm: ArmModel, R_d: Array) -> Records:
-    """The record (1,) of `told_layout` for a scenario, its arm model and the end effector's rotation `R_d` (3, 3), D<-E.
+def told(scenario: Scenario, arm: ArmModel, R_d: Array, posture: Array | None = None) -> Records:
+    """The record (1,) of `told_layout` for a scenario and its arm model.
+
+    Args:
+        scenario: believed.
+        arm: its model.
+        R_d: the end effector's rotation (3, 3), D<-E.
+        posture: pose (n,), rad, to which the null space is drawn; none if absent.
 
     Raises:
         ConfigurationError: the arm has no joint of the name that `arm.elbow_joint` gives.
@@ -57,6 +65,8 @@ def told(scenario: Scenario, arm: ArmModel, R_d: Array) -> Records:
     c, p = scenario.control, np.zeros(1, told_layout(arm.joints))
     p["orientation_kp"], p["orientation_kd"], p["R_d"] = c.orientation_kp, c.orientation_kd, R_d
     p["elbow"], p["elbow_force"] = elbow_of(scenario, arm), c.elbow_force_n
+    if posture is not None:
+        p["posture"], p["posture_rate"] = posture, c.posture_rad_s
     p["null_damping"], p["range_margin"] = c.null_space_damping_nms, c.range_margin_rad
     p["range_stiffness"], p["q_min"], p["q_max"] = c.range_stiffness_nm, arm.q_min, arm.q_max
     p["friction"], p["damping"] = friction.known(arm.friction), friction.known(arm.damping)

@@ -12,9 +12,10 @@
 v_w = v_d + sat(k_p (r_d − r)), a_w = a_d + k_v (v_w − v) + i − d, F = m (a_w − γ) (K.1), i̇ = k_i (v_w − v); q_d turns b_z
 into F's direction and has the heading ψ_d. sat limits the speed that is asked for, so the reference may jump.
 
-Limits: F_z is kept in [`lift_min`, `thrust_max` cos `tilt_max`] and the horizontal part of F below F_z tan `tilt_max`. So |F|
-never exceeds `thrust_max`, and the whole tilt stays available however hard the UAV climbs. f_T = F_z / (b_z·e₃) gives the vertical
-force that was asked for even while the attitude still lags. Anti-windup: i stops, vertically and horizontally, where F is at a limit
+Limits: the horizontal part F_h of F is kept below F_z tan `tilt_max`, where F_z counts for at most `thrust_max` cos `tilt_max`, and
+then F_z in [`lift_min`, √(`thrust_max`² − F_h²)]. So |F| never exceeds `thrust_max`, the whole tilt stays available however hard the
+UAV climbs, and one that leans less climbs with all that is left. f_T = F_z / (b_z·e₃) gives the vertical force that was asked for
+even while the attitude still lags. Anti-windup: i stops, vertically and horizontally, where F is at a limit
 and the error would drive it further.
 """
 
@@ -131,11 +132,13 @@ def _limited(a: Array, factor: float, largest: float) -> Array:
 @njit(cache=True)
 def _within_limits(force: Array, gains: StationGains) -> Array:
     held = force.copy()
-    held[2] = min(max(force[2], gains.lift_min), gains.thrust_max * np.cos(gains.tilt_max))
-    sideways, room = np.sqrt(force[0] ** 2 + force[1] ** 2), held[2] * np.tan(gains.tilt_max)
+    lift = min(max(force[2], gains.lift_min), gains.thrust_max * np.cos(gains.tilt_max))
+    sideways, room = np.sqrt(force[0] ** 2 + force[1] ** 2), lift * np.tan(gains.tilt_max)
     if sideways > room:
         held[0] *= room / sideways
         held[1] *= room / sideways
+    left = np.sqrt(gains.thrust_max**2 - min(sideways, room) ** 2)
+    held[2] = min(max(force[2], gains.lift_min), left)
     return held
 
 

@@ -35,6 +35,9 @@ TRIED: tuple[tuple[float, tuple[float, float] | None], ...] = (
 are tried. Ahead and behind only: between, the skids, which stand across the base's x axis, would not cross the rails. The catch before
 the cradle and hardly above it: so an arm whose wrist is wider than the slot passes below the rails and never between them."""
 
+CALM = (0.0, (0.06, -0.159))
+"""Likewise, as it is in calm air, for an arm that cannot go the longer way of rough weather."""
+
 STEP = np.array([0.08, 0.06, 0.08])
 """Of the grid over the arm's reach: out, aside, up."""
 
@@ -97,7 +100,10 @@ def places(bench: Bench, keep: frozenset[str]) -> Iterator[list[Place]]:
         bench: what they are tried with.
         keep: those of "catch" and "put_down" that stay where the scenario has them.
     """
-    for heading, apart in TRIED if not keep else TRIED[:1]:
+    forecast, tried = bench.scenario, TRIED
+    if forecast.foretold_mps > 0.0 or forecast.foretold_deck:
+        tried = TRIED[0], CALM, *TRIED[1:]
+    for heading, apart in tried if not keep else tried[:1]:
         yield _along(bench, heading, keep, apart)
 
 

@@ -9,7 +9,7 @@ SHARED = (
     *("run", "arm", "tool", "hinge", "uav", "rotors", "onboard", "link", "sensors", "environment"),
     *("imperfections.noise", "disturbance", "faults", "belief"),
     *_of("control", "law orientation_kp orientation_kd elbow_force_n null_space_damping_nms range_margin_rad"),
-    *_of("control", "range_stiffness_nm free_rad_s free_damping approach.coast_s"),
+    *_of("control", "posture_rad_s range_stiffness_nm free_rad_s free_damping approach.coast_s"),
 )
 """Keys of the hardware and of what every controller does."""
 

@@ -3,10 +3,14 @@
 from typing import Any
 
 from armland.mission.missions.keys import GEAR, ON_MAGNET, SHARED
+from armland.mission.reference.guided import ALONE_S
 from armland.mission.supervisor.ends import FINALS
 from armland.mission.table.mission import At, Criterion, Mission
 from armland.mission.table.phases import Phase
 from armland.scenario import Scenario
+
+TRIMMED_S = 0.05
+"""For which a UAV that hovers by itself is listened to, at least."""
 
 READY = "magnet_ready > half, bias_known > half, uav_seen > half, progress > almost_one"
 """What a self-test waits for."""
@@ -85,7 +89,7 @@ PHASES = (
 
 FIND = Phase(
     "find", kind="ground", arm="hold", uav="autonomous", free=True, seeks=True, timeout_s=20.0, on_timeout="refused"
-).to("self_test", "uav_seen > half, elapsed > settled_s", 0.2)
+).to("self_test", "uav_seen > half, elapsed > trimmed_s", 0.02)
 """The UAV hovers by itself until the camera sees it."""
 
 
@@ -138,6 +142,8 @@ LANDING = Mission(
     ),
     targets=TARGETS,
     moves=MOVES,
+    # By then it has said what it asks of its rotors; a moment later it may be out of view again.
+    thresholds=lambda _: {"trimmed_s": ALONE_S + TRIMMED_S},
     timeouts={
         "find": "the camera does not see the UAV: check marker and camera, and whether it hovers above the arm",
         "self_test": "not all was ready: check magnet, force sensor and camera",

@@ -20,6 +20,7 @@ from armland.mission.table.arrays import FAULT_ROWS
 from armland.mission.table.phases import LINK, UAV
 from armland.models.environment import climb
 from armland.records import Record
+from armland.rotations import Array, multiply
 
 COUNT = len(FAULTS)
 AUTONOMOUS, STATION, RAMP, BALANCE = (UAV.index(name) for name in ("autonomous", "station", "ramp", "balance"))
@@ -94,6 +95,7 @@ def watch_layout() -> np.dtype:
             ("hinge_max", "f8"),  # N
             ("tilt_max", "f8"),  # rad
             ("thrust_max", "f8"),  # N, largest thrust that is commanded
+            ("sinks", "f8"),  # m/s, with all the thrust
             ("plunges", "f8"),  # m/s, at which a UAV sinks whose rotors give too little
             ("hover_max", "f8"),  # N, command beyond which a UAV cannot hover safely
             ("joint_margin", "f8"),  # rad
@@ -220,6 +222,15 @@ def _load_signs(
 
 
 @njit(cache=True)
+def _upright(held: bool, quat: Array, environment: Record) -> float:
+    # Cosine of the UAV's tilt: of one that is held against the deck, of one that flies against the vertical.
+    q = quat.copy()
+    if not held and environment.moves:
+        q = multiply(environment.base_quat.copy(), q)
+    return float(1.0 - 2.0 * (q[1] ** 2 + q[2] ** 2))
+
+
+@njit(cache=True)
 def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     m, e, p, known, kept = b.tick.measurement, b.tick.estimate, b.told.decide.watch, b.kept.estimate, b.kept
     held, seen, apart, drawn, gap = kept.decide.held == 1, kept.decide.seen, 0.0, 0.0, 0.0
@@ -227,8 +238,7 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
         gap += (e.plate[i] - e.r[i]) ** 2
         apart += (kept.refer.r[i] - e.r[i]) ** 2
         drawn += (kept.refer.r[i] - kept.decide.grip[i]) ** 2
-    up = 1.0 - 2.0 * (e.quat[1] ** 2 + e.quat[2] ** 2)
-    signs[UAV_TILT] = up < np.cos(p.tilt_max)
+    signs[UAV_TILT] = _upright(held, e.quat, b.environment) < np.cos(p.tilt_max)
     # It knows its motors' speeds. A lean alone does not say so: a gust, a blow and the rails make a healthy UAV lean.
     signs[ROTOR_LOST] = held and m.uav_weak == 1 and not signs[UAV_SILENT] and known.grip_far == 0 and not signs[SLIP]
     felt = e.hinge_force[2] > WEIGHT_FELT * known.weight and kept.act.thrust > 0.25 * known.weight
@@ -237,7 +247,7 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     signs[POWER_LOST] = signs[UAV_SILENT] and (falls or (held and felt))
     strains = kept.act.thrust >= min(0.99 * p.thrust_max, STRAINS * kept.act.hover)
     # A loss that its rotors can make up for is learnt: the ground catches it sooner than the UAV's own hover.
-    sinks = kept.act.thrust >= 0.99 * p.thrust_max and rises < -SINKS_MPS
+    sinks = kept.act.thrust >= 0.99 * p.thrust_max and rises < -p.sinks
     known_speed = e.plate_valid == 1 and known.filter.scattered == 0
     sinks = row.uav == STATION and known_speed and (sinks or (strains and rises < -p.plunges))
     sinks = sinks or (row.uav == AUTONOMOUS and known_speed and rises < -p.plunges)
