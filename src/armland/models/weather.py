@@ -90,9 +90,10 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
     """
     wind, g, own = expected(scenario), float(np.linalg.norm(scenario.environment.gravity_mps2)), scenario.onboard.hover
     above = scenario.place.start_above_m + (RISES_MPS * FOUND_S if scenario.foretold_deck else 0.0)
-    posture = {"control.posture_rad_s": POSTURE_RAD_S}
+    # Of a UAV that stands a gust of three standard deviations is up to half of its weight: more than wet rails hold.
+    kept = {"control.posture_rad_s": POSTURE_RAD_S, "place.keep_hold": True}
     if wind.mean <= 0.0:
-        return {"place.start_above_m": above, **posture} if scenario.foretold_deck else {}
+        return {"place.start_above_m": above, **kept} if scenario.foretold_deck else {}
     rate = scenario.uav.drag_nspm / mass
     lean = min(wind.lean(rate / g, STRONGEST) + SPARE_RAD, MOST_RAD)
     down = GUST * rate * wind.sigma / (own.k_position * own.k_velocity + own.k_integral)
@@ -102,7 +103,7 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
         "run.duration_s": scenario.run.duration_s + longer,
         "place.start_above_m": above + down,
         "onboard.hover.tilt_max_rad": max(own.tilt_max_rad, lean),
-        **posture,
+        **kept,
     }
 
 

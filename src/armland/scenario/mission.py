@@ -23,6 +23,9 @@ class Place(Section):
     above_m: of.Length = key(0.05, "height above the rails at which the descent begins")
     search_m: of.Length = key(0.015, "how far above and below its believed place the cradle is felt for")
     withdraw_m: of.Length = key(0.06, "displacement of the arm downwards after the release")
+    keep_hold: bool = key(
+        False, "whether the arm keeps hold of the UAV that it has put down; so it does in wind and on a deck unless set"
+    )
     takeoff_velocity_mps: of.Velocity3 = key((0.0, 0.0, 0.0), "velocity that the arm gives to a UAV it lets go")
     launch_m: of.Point = key((0.40, 0.0, 0.92), "where the run-up to that velocity leads through")
     fly_on: bool = key(

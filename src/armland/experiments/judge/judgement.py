@@ -63,6 +63,7 @@ KINDS = {
         {"capture": "", "touchdown": "the UAV never stood on the cradle", "rest": ""},
         (Criterion("touching", 0.0, "pads", "not let go"),),
     ),
+    "kept": Kind("standing", {"capture": "", "touchdown": "the UAV never stood on the cradle", "rest": ""}),
     "takeoff": Kind("flying", {"release": "the magnet never let go of a flying UAV", "steady": ""}),
     "path": Kind("held", {"tracking": ""}),
 }

@@ -87,6 +87,18 @@ PHASES = (
     *FINALS,
 )
 
+UNLOADED = "ground_share > share_resting, rotors < rotors_off_n"
+
+GOES = ("release", "withdraw")
+"""Phases in which the arm lets go and draws back."""
+
+HOLDS = {
+    "unload": next(p for p in PHASES if p.name == "unload")._replace(arm="hold", guards=()).to("done", UNLOADED, 0.2),
+    "done": next(p for p in PHASES if p.name == "done")._replace(magnet="on", link="landed"),
+}
+"""What is done differently where the arm keeps hold of the UAV: wind and deck would push it along the rails, and what pushes at the
+hinge then is no stress to which the arm should give way."""
+
 FIND = Phase(
     "find", kind="ground", arm="hold", uav="autonomous", free=True, seeks=True, timeout_s=20.0, on_timeout="refused"
 ).to("self_test", "uav_seen > half, elapsed > trimmed_s", 0.02)
@@ -97,9 +109,10 @@ def _phases(scenario: Scenario) -> tuple[Phase, ...]:
     # In wind, and above a deck that moves, a UAV that hovers by itself does not stay in view for as long as a self-test: it is guided
     # from the first sight on.
     windy, moves = bool(scenario.forecast.wind_mps), bool(scenario.forecast.deck_moves)
+    phases = tuple(HOLDS.get(p.name, p) for p in PHASES if p.name not in GOES) if scenario.place.keep_hold else PHASES
     if not windy and not moves:
-        return PHASES
-    first, *rest = PHASES
+        return phases
+    first, *rest = phases
     if windy:
         # What the rotors make of a command changes until the cradle is near.
         rest = [p._replace(observe=True) if p.name == "set_down" else p for p in rest]
@@ -131,7 +144,7 @@ LANDING = Mission(
     summary="catch a flying UAV and put it down on the cradle",
     start="air",
     phases=_phases,
-    uses=(*SHARED, *GEAR, *ON_MAGNET),
+    uses=(*SHARED, *GEAR, *ON_MAGNET, "place.keep_hold"),
     points=lambda _: (
         At("catch_m", -1.0, "wait_below_m"),
         At("catch_m"),

@@ -97,6 +97,8 @@ def judged(mission: Mission, scenario: Scenario, weight: float) -> Mission:
         weight: N, of all that flies.
     """
     wind = expected(scenario)
+    if scenario.place.keep_hold and mission.judged_as == "landing":
+        mission = mission._replace(judged_as="kept", praise="landed; the arm keeps hold of it")
     if wind.mean <= 0.0:
         return mission
     lean, blown = swayed(scenario, weight / float(np.linalg.norm(scenario.environment.gravity_mps2)))
