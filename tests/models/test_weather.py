@@ -6,9 +6,10 @@ import pytest
 from armland.experiments.episode import fly
 from armland.mission.missions.landing import LANDING
 from armland.mission.missions.weather import MOST_CARRIED, judged, weathered
+from armland.mission.registry import MISSIONS
 from armland.models.airframe.sizing import sized
 from armland.models.parameters import plate_mass, rotor_set, uav_parameters
-from armland.models.weather import HEIGHT_M, MOST_RAD, expected, started, swayed
+from armland.models.weather import HEIGHT_M, MOST_RAD, POSTURE_RAD_S, expected, started, swayed
 from armland.plant.wind.dryden import intensities, lengths
 from armland.plant.wind.profile import height_of_catch, speed_at
 from armland.scenario import load_scenario
@@ -135,3 +136,32 @@ def test_uav_waits_higher_above_a_deck_that_moves(wind):
     assert moves.place.start_above_m - still.place.start_above_m == pytest.approx(0.2)
     own = landing(wind, forecast={"wind_mps": wind, "deck_moves": True}, place={"start_above_m": 0.3})
     assert sized(own).place.start_above_m == 0.3
+
+
+@pytest.mark.parametrize(("wind", "moves"), [(4.0, False), (0.0, True)])
+def test_rough_weather_gives_room_below_the_catch_and_holds_pose_and_uav(wind, moves):
+    rough = sized(landing(wind, forecast={"wind_mps": wind, "deck_moves": moves}))
+    calm = sized(landing(0.0))
+    room, before = (s.place.catch_m[2] - s.place.put_down_m[2] for s in (rough, calm))
+    assert room == pytest.approx(0.33)
+    assert before == pytest.approx(0.159)
+    assert (rough.control.posture_rad_s, rough.place.keep_hold) == (POSTURE_RAD_S, True)
+    assert (calm.control.posture_rad_s, calm.place.keep_hold) == (0.0, False)
+
+
+@pytest.mark.parametrize("key", ["catch_m", "put_down_m"])
+def test_one_place_that_the_user_has_set_keeps_both_where_they_are(key):
+    own = {"catch_m": (0.62, 0.0, 0.85), "put_down_m": (0.68, 0.0, 0.70)}
+    made = sized(landing(8.0, place={key: own[key], "keep_hold": False})).place
+    usual = landing(0.0).place
+    assert getattr(made, key) == own[key]
+    other = next(k for k in own if k != key)
+    assert getattr(made, other) == getattr(usual, other)
+    assert not made.keep_hold
+
+
+def test_uav_that_is_kept_is_judged_without_being_let_go():
+    rough, calm = (sized(landing(wind)).believed() for wind in (8.0, 0.0))
+    assert judged(LANDING, rough, 5.0).judged_as == "kept"
+    assert judged(LANDING, calm, 5.0).judged_as == "landing"
+    assert judged(MISSIONS["takeoff"], rough, 5.0).judged_as == "takeoff"

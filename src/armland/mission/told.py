@@ -219,6 +219,10 @@ def _uav(p: Records, t: Telling) -> None:
     p["shortfall"] = s.limits.shortfall_n
     p["thrust_min"] = idle + thrust.floor_n
     p["thrust_max"], p["hinged"] = thrust.ceiling * full, c.thrust_n
+    p["lift_min"] = p["thrust_min"]
+    if s.foretold_mps > 0.0 or s.foretold_deck:
+        # A deck that falls away is followed no faster than can be braked when it comes back.
+        p["lift_min"] = np.maximum(p["thrust_min"], 2.0 * t.flyer.weight - p["thrust_max"])
     if t.launch is not None:
         p["launch"] = t.launch.velocity
         if s.place.fly_on:

@@ -68,6 +68,7 @@ def told_layout() -> np.dtype:
             ("thrust_rate", "f8"),  # N/s
             ("thrust_max", "f8"),  # N
             ("thrust_min", "f8"),  # N
+            ("lift_min", "f8"),  # N, of the station keeping
             ("shortfall", "f8"),  # N, hinge force of a caught UAV from which on its rotors' loss is learnt
             ("force_slack", "f8"),  # N, hinge force behind its expectation that stops the ramp
             ("balance_rate", "f8"),  # 1/s, N/s of thrust per N of hinge force while the hinge is freed of force

@@ -93,3 +93,20 @@ def test_wish_is_both_fields_and_a_damper(arm):
     elbow_field(arm.axis, arm.anchor, ELBOW, 5.0, elbow)
     expected = elbow + 20.0 * np.where(np.arange(7) == 2, 0.4 - 0.25 - 0.3, 0.0)
     np.testing.assert_allclose(still, expected)
+
+
+def test_posture_draws_back_as_a_critically_damped_joint_space_of_any_inertia(arm):
+    """M⁻¹ of what it adds is ω² (q₀ − q) − 2 ω φ̇; without a bandwidth it adds nothing."""
+    rng = np.random.default_rng(6)
+    p = np.zeros(1, told_layout(arm.joints))
+    p["q_min"], p["q_max"] = -np.inf, np.inf
+    home = rng.uniform(-0.5, 0.5, arm.joints)
+    p["posture"] = home
+    for q in random_states(arm, 5):
+        qd = rng.normal(size=arm.joints)
+        arm.update(q, qd)
+        p["posture_rate"] = 0.0
+        without = null_space_wish(q, qd, arm.state[0], p[0])
+        p["posture_rate"] = 6.0
+        added = null_space_wish(q, qd, arm.state[0], p[0]) - without
+        np.testing.assert_allclose(np.linalg.solve(arm.mass_matrix, added), 36.0 * (home - q) - 12.0 * qd, atol=1e-6)

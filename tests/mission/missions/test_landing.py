@@ -50,3 +50,14 @@ def test_uav_is_guided_from_the_first_sight_on_where_the_deck_is_said_to_move(se
     found = {p.name: p for p in MISSIONS["landing"].phases(believed)}
     assert next(iter(found)) == first
     assert found["self_test"].uav == ("station" if first == "find" else "autonomous")
+
+
+def test_arm_that_keeps_hold_neither_lets_go_nor_draws_back():
+    """The magnet stays on to the end, and a hinge that the wind pushes at need not come free of force."""
+    found = {p.name: p for p in MISSIONS["landing"].phases(load_scenario("landing", {"place": {"keep_hold": True}}))}
+    assert not {"release", "withdraw"} & found.keys()
+    (guard,) = found["unload"].guards
+    assert guard.target == "done"
+    assert "hinge_force" not in [c.signal for c in guard.conditions]
+    done = found["done"]
+    assert (done.magnet, done.arm, done.uav, done.final) == ("on", "hold", "off", True)

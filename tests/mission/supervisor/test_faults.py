@@ -729,3 +729,12 @@ def test_uav_that_is_thrown_off_its_cradle_has_left_the_magnet(bench, above, thr
     row["final"], bench.kept["act"]["thrust"] = 1, thrust
     known["grip_far"], known["grip"][0, 2] = images, above
     assert find(bench, LONG, matters=("slip",), arm=YIELD) == found
+
+
+@pytest.mark.parametrize(("held", "found"), [(0, "none"), (1, "uav_tilt")])
+def test_tilt_of_a_uav_that_flies_is_against_the_vertical_and_not_against_a_deck_that_leans(bench, held, found):
+    """The deck leans by 0.2 rad; the UAV, by 0.4 rad in W, leans by 0.6 rad as seen from there."""
+    bench.board["environment"]["moves"] = 1
+    bench.board["environment"]["base_quat"] = from_rotation_vector(np.array([0.2, 0.0, 0.0]))
+    bench.e["quat"][0] = from_rotation_vector(np.array([-0.6, 0.0, 0.0]))
+    assert find(bench, 100, held=held) == found

@@ -93,11 +93,11 @@ GOES = ("release", "withdraw")
 """Phases in which the arm lets go and draws back."""
 
 HOLDS = {
-    "unload": next(p for p in PHASES if p.name == "unload")._replace(arm="hold", guards=()).to("done", UNLOADED, 0.2),
+    "unload": next(p for p in PHASES if p.name == "unload")._replace(guards=()).to("done", UNLOADED, 0.2),
     "done": next(p for p in PHASES if p.name == "done")._replace(magnet="on", link="landed"),
 }
-"""What is done differently where the arm keeps hold of the UAV: wind and deck would push it along the rails, and what pushes at the
-hinge then is no stress to which the arm should give way."""
+"""What is done differently where the arm keeps hold of the UAV: wind and deck would push it along the rails. Nor does it wait for the
+hinge to be free of force: it would give way to the wind meanwhile, and drag the skids along."""
 
 FIND = Phase(
     "find", kind="ground", arm="hold", uav="autonomous", free=True, seeks=True, timeout_s=20.0, on_timeout="refused"

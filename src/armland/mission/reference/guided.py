@@ -213,7 +213,7 @@ def keep(place: Array, lever: Array, moving: Array, b: Record) -> None:
         velocity[i] += coming * ahead
     period = p.period * p.tick_s
     rates = (p.k_position, p.k_velocity, p.k_integral, p.speed_max, p.integral_max, p.tilt_max)
-    gains = StationGains(p.mass, period, *rates, p.thrust_min, p.thrust_max, p.vertical)
+    gains = StationGains(p.mass, period, *rates, p.lift_min, p.thrust_max, p.vertical)
     gravity = apparent_gravity(b.environment, position, velocity)
     reference = StationReference(wanted, going, s.ride.aside_lead.copy(), p.heading)
     thrust, q_d, integral = keep_station(position, velocity, e.quat, reference, wind, gains, held, gravity)
