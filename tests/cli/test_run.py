@@ -10,13 +10,15 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
+from armland.cli.commands import run
 from armland.control.laws.own import ARGUMENTS
 from armland.errors import PlantError
 from armland.mission.registry import MISSIONS
 from armland.mission.supervisor.table import FAULTS
+from armland.models.airframe.sizing import sized
 from armland.runtime import loops
 from armland.runtime.log import read_log
-from armland.scenario import SCENARIOS
+from armland.scenario import SCENARIOS, load_scenario
 
 ROOT = Path(__file__).parents[2]
 
@@ -347,3 +349,11 @@ def test_film_that_cannot_be_drawn_changes_no_verdict(armland, tmp_path, monkeyp
     assert done.code == 0
     assert "armland: no film: no OpenGL for off-screen pictures" in done.err
     assert files(tmp_path / "out") == ["landing.mcap", "result.json"]
+
+
+@pytest.mark.parametrize(("wind", "told"), [(8.0, "place.put_down_m = [0.7, 0.0, 0.6]"), (0.0, "")])
+def test_rough_weather_says_where_it_puts_catch_and_cradle(wind, told):
+    wanted = load_scenario("landing", {"air": {"wind_mps": wind}})
+    found = run._roomier(wanted, sized(wanted))
+    assert told in found
+    assert bool(found) is bool(told)

@@ -129,11 +129,20 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
     from armland.experiments.episode import prepare
 
     flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))
-    if flight.moved:
-        console.print(f"place: {flight.moved}", highlight=False, markup=False, soft_wrap=True)
+    if moved := flight.moved or _roomier(loaded, flight.scenario):
+        console.print(f"place: {moved}", highlight=False, markup=False, soft_wrap=True)
     if given["seeds"] > 1:
         _campaign(flight, mission, given, console)
     _single(flight, mission, given, console, script)
+
+
+def _roomier(wanted: "Scenario", flown: "Scenario") -> str:
+    # Where rough weather puts catch and cradle; empty where they are as they were.
+    if wanted.place.put_down_m == flown.place.put_down_m:
+        return ""
+    from armland.mission.feasibility.placing import told_places
+
+    return f"{told_places(flown, wanted)} chosen, because air that sinks and a deck that rises need more room below the catch"
 
 
 def script_of_option(given: dict[str, Any]) -> "tuple[Message, ...] | None":
