@@ -31,7 +31,7 @@ GUST = 2.0
 STRONGEST = 3.0
 """Likewise of one that must not bring it to an end."""
 
-LENGTH_M, WAITS = 44.0, 3.0
+LENGTH_M, WAITS = 44.0, 6.0
 """Length of turbulence along the wind at 20 ft, h/(0.177 + 0.000823 h)^1.2 in feet: over the mean wind it is the time that a gust takes
 to pass. For how many of them a run has time beyond one in calm air."""
 
