@@ -55,6 +55,7 @@ class View:
 
     def __init__(self, browser, address: str, width: int, height: int, name: str) -> None:
         self.page = browser.new_page(viewport={"width": width, "height": height})
+        self.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
         self.page.set_default_timeout(MS)
         self.name, self.errors = name, []
         self.page.on("pageerror", lambda e: self.errors.append(str(e)))
@@ -103,7 +104,17 @@ class View:
         if folder := os.environ.get("ARMLAND_SCREENSHOTS"):
             # Drawn in software a scene is late.
             self.page.wait_for_timeout(2500)
+            for close in self.page.locator(".mantine-Notification-closeButton").all():
+                close.click()
             self.page.screenshot(path=str(Path(folder) / f"{self.name}_{step}.png"))
+
+    def covered(self) -> float:
+        """How much of the scene the panel hides in a narrow window, px."""
+        scene = self.page.locator("canvas").first.bounding_box()
+        panel = self.page.locator(".mantine-Paper-root").filter(has_text="armland").first.bounding_box()
+        assert panel["width"] == self.page.viewport_size["width"]
+        assert scene["height"] > 200
+        return scene["y"] + scene["height"] - panel["y"]
 
     def width_overflow(self) -> int:
         return self.page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
@@ -162,6 +173,7 @@ def test_a_landing_is_steered_and_scrubbed_through(browser, log_file, tmp_path) 
         view.page.set_viewport_size({"width": 420, "height": 640})
         view.picture("narrow")
         assert view.width_overflow() <= 0
+        assert view.covered() <= 0
         assert view.errors == []
         view.page.close()
     thrown, held = ([m.do for m in read_script(log)] for log in sorted(logs.glob("*.mcap")))
@@ -248,12 +260,15 @@ def test_a_landing_is_started_steered_and_looked_at_again(browser, tmp_path) -> 
         view.page.set_viewport_size({"width": 480, "height": 900})
         view.picture("narrow")
         assert view.width_overflow() <= 0
+        assert view.covered() <= 0
         view.page.set_viewport_size({"width": 1200, "height": 800})
         view.choose("times real time", "as fast as it goes")
         view.sees("the operator aborted it")
-        view.tab("next flight")
-        again = view.field("do it again")
-        view.page.wait_for_function("e => e.value.includes('--operator')", arg=again.element_handle())
+        view.page.wait_for_function("document.querySelector('[data-command]').textContent.includes('--operator')")
+        view.press("copy the command that does this again")
+        view.sees("copied")
+        copied = view.page.evaluate("navigator.clipboard.readText()")
+        assert copied == view.page.locator("[data-command]").inner_text()
         assert view.errors == []
         view.page.close()
 
@@ -292,11 +307,13 @@ def test_a_replay_is_scrubbed(browser, flown) -> None:
         view.page.set_viewport_size({"width": 480, "height": 900})
         view.picture("narrow")
         assert view.width_overflow() <= 0
+        assert view.covered() <= 0
         assert view.errors == []
         narrow = View(browser, address, 420, 860, "phone")
         narrow.page.locator("canvas").first.wait_for()
         narrow.picture("opened")
         assert narrow.width_overflow() <= 0
+        assert narrow.covered() <= 0
         narrow.page.close()
         view.page.close()
     with served("replay", str(log), str(other)) as address:

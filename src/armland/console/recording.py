@@ -18,7 +18,9 @@ from armland.plant.wind.profile import height_of_catch, speed_at, towards
 from armland.records import Records
 from armland.rotations import Array
 from armland.runtime.log import Log
+from armland.runtime.recorder import SCENARIO_NAME
 from armland.scenario import Scenario
+from armland.view.page.again import again
 
 
 class Event(NamedTuple):
@@ -67,6 +69,15 @@ class Recording:
         return f"{m.get('experiment') or m.get('mission', 'run')} seed {m.get('seed', '?')} ({self.file.stem})"
 
     @property
+    def command(self) -> str:
+        """The command that flies the same again; empty where the log says too little."""
+        more = ("--operator", str(self.file)) if self.told else ()
+        try:
+            return again(self.log.metadata, self.log.attachments.get(SCENARIO_NAME), more).command
+        except (LookupError, TypeError, ValueError):
+            return ""
+
+    @property
     def begin(self) -> float:
         """Time of the first tick, s."""
         return float(self.curves.time[0])
@@ -109,6 +120,10 @@ class Recording:
                 air = air.model_copy(update={"wind_mps": message.value})
         scenario = self.scenario.model_copy(update={"air": air})
         return speed_at(scenario, height_of_catch(scenario)) * towards(scenario) if air.wind_mps > 0.0 else None
+
+    def share_of_sea(self, time: float) -> float:
+        """Share of the deck's motion that the operator asked for until then, 1 where he said nothing."""
+        return next((m.value for m in reversed(self.told) if m.do == "sea" and m.tick * self.period_s <= time), 1.0)
 
     def _names(self, what: str) -> tuple[str, ...]:
         try:
