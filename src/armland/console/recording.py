@@ -8,7 +8,7 @@ import numpy as np
 
 from armland.console.gauges import name_of
 from armland.console.plots import Curves, curves_of, thin
-from armland.console.stage.poses import scene_of
+from armland.console.stage.poses import armless_scene_of, scene_of
 from armland.errors import LogError
 from armland.experiments.judge.deck import seen_from_deck
 from armland.experiments.operator.message import Message
@@ -54,6 +54,8 @@ class Recording:
         self.rate_hz = max(1, round(1.0 / self.period_s))
         self.phases, self.faults = self._names("phases"), self._names("faults")
         self.scenario = self._scenario()
+        self.armless = False
+        """Whether the scene's arm is none that flew."""
         self.scene = self._scene()
         # Charts show motion against the deck, as the judge sees it.
         seen = seen_from_deck(thin(self.ticks, self.rate_hz))
@@ -139,16 +141,21 @@ class Recording:
             return None
 
     def _scene(self) -> Scene | None:
+        metadata, name = self.log.metadata, self.file.name
         try:
-            scene = scene_of(self.log.metadata)
-        except LogError as lost:
-            self.notes.append(f"{self.file.name}: {lost}. Its plots are shown.")
+            scene = scene_of(metadata)
+            if scene.joints == self.ticks["truth"]["q"].shape[1]:
+                return scene
+            lost = LogError("its arm has not as many joints as its scenario's")
+        except LogError as no:
+            lost = no
+        try:
+            scene = armless_scene_of(metadata)
+        except LogError:
+            self.notes.append(f"{name}: {lost}. Its plots are shown.")
             return None
-        if scene.joints != self.ticks["truth"]["q"].shape[1]:
-            self.notes.append(
-                f"{self.file.name}: its arm has not as many joints as its scenario's. Its plots are shown."
-            )
-            return None
+        self.armless = True
+        self.notes.append(f"{name}: {lost}. All but the arm is shown.")
         return scene
 
     def _told(self) -> tuple[Message, ...]:

@@ -118,7 +118,7 @@ class Replay:
                 continue
             envelope = threshold(run.log.metadata, "align_offset_m")
             api = self._server.viser.scene
-            stage = Stage(api, run.scene, f"/flight_{i + 1}", run.weight, run.scenario, envelope, ghost=i > 0)
+            stage = Stage(api, run.scene, f"/flight_{i + 1}", run.weight, run.scenario, envelope, i > 0, run.armless)
             self._stages.append((run, stage))
         if self._stages:
             put_camera(self._server.viser, np.array(self._stages[0][0].at(0.0)["truth"]["ee"]))

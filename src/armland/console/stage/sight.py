@@ -52,7 +52,7 @@ class Sight:
         model = poses.model
         self._poses, self._camera = poses, camera
         self._half = np.tan(0.5 * np.deg2rad(camera.field_of_view_deg))
-        self._shapes = [s for g in drawn(model) if (s := _shape(model, g)) is not None]
+        self._shapes = [s for g in drawn(model) if (s := _shape(model, g)) is not None and s.body not in poses.absent]
         self._uav = int(model.geom_bodyid[model.geom(MARKER).id])
         half = 0.5 * camera.marker_size_m
         self._square = half * np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
@@ -167,8 +167,9 @@ def _polygon(path: Array, color: str) -> str:
 def _page(parts: list[str], half: Array, words: str) -> str:
     height = round(WIDTH * half[1] / half[0])
     return (
-        f'<figure style="margin:2px 10px 6px;font-size:11px"><b>what the camera sees</b> <svg viewBox="0 0 {WIDTH} {height}" role="img" '
-        f'aria-label="what the camera sees" data-sight="1" style="display:block;width:70%;border-radius:4px">'
+        '<figure style="margin:2px 10px 6px;font-size:11px"><b>what the camera sees</b> '
+        f'<svg viewBox="0 0 {WIDTH} {height}" role="img" aria-label="what the camera sees" data-sight="1" '
+        'style="display:block;width:70%;border-radius:4px">'
         f'<rect width="{WIDTH}" height="{height}" fill="{SKY}"/>'
         f'<g stroke="#0007" stroke-width="0.6">{"".join(parts)}</g></svg>'
         f"<figcaption>{escape(words)}</figcaption></figure>"

@@ -57,6 +57,7 @@ class Stage:
         scenario: that is flown; without it there is no camera, and the water is flat.
         envelope: radius of the disc on the magnet, m; 0: none.
         ghost: whether it is a second flight, drawn pale in one colour.
+        armless: whether the scene's arm is none that flew, see `Poses`.
     """
 
     def __init__(
@@ -68,14 +69,16 @@ class Stage:
         scenario: Scenario | None = None,
         envelope: float = 0.0,
         ghost: bool = False,
+        armless: bool = False,
     ) -> None:
-        self.poses, self._api, self._name, self._ghost = Poses(scene), api, name, ghost
+        self.poses, self._api, self._name, self._ghost = Poses(scene, armless), api, name, ghost
         self._weight = weight if np.isfinite(weight) and weight > 0.0 else 10.0
         self._root = api.add_frame(name, show_axes=False)
         self._frames: dict[int, Any] = {}
         self._last: dict[int, tuple[Array, Array]] = {}
         for number, mesh in enumerate(meshes_of(scene.model)):
-            self._hang(number, mesh)
+            if mesh.body not in self.poses.absent:
+                self._hang(number, mesh)
         self._water: Water | None = None
         if not ghost:
             self._lay_floor(scene, scenario)
