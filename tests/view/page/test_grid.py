@@ -1,0 +1,27 @@
+"""Tables of a page, made of those of the terminal."""
+
+from rich.text import Text
+
+from armland.view.page.grid import Cell, grid_of, holds
+from armland.view.tables.verdicts import mark, titled
+
+
+def test_a_table_of_the_terminal_becomes_one_of_a_page() -> None:
+    table = titled("What `x` does", "", "found", "", left=(0, 2))
+    table.add_row(Text("[not a tag]"), "1.5 [1.0 … 2.0]", mark(True))
+    table.add_row("two", "-", mark(False))
+    table.add_section()
+    table.add_row("three", "3", mark(None))
+    grid = grid_of(table)
+    assert grid.caption == "What x does"
+    assert grid.columns == ["what", "found", "verdict"]
+    assert grid.left == (0, 2)
+    assert grid.rows == [
+        ("[not a tag]", "1.5 [1.0 … 2.0]", holds(True)),
+        ("two", "-", holds(False)),
+        ("three", "3", "shown"),
+    ]
+
+
+def test_verdicts_carry_a_mark_and_say_the_same_in_words() -> None:
+    assert [holds(v) for v in (True, False, None)] == [Cell("holds", "good"), Cell("fails", "bad"), Cell("not judged")]
