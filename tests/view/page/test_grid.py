@@ -23,5 +23,12 @@ def test_a_table_of_the_terminal_becomes_one_of_a_page() -> None:
     ]
 
 
+def test_rows_are_named_where_the_terminal_leaves_that_out() -> None:
+    table = titled("Laws", "law", "on board", left=(0, 1))
+    for law, board in (("E2", "one"), ("", "two"), ("", "three"), ("E3", "one")):
+        table.add_row(law, board)
+    assert [row[0] for row in grid_of(table).rows] == ["E2", "E2", "E2", "E3"]
+
+
 def test_verdicts_carry_a_mark_and_say_the_same_in_words() -> None:
     assert [holds(v) for v in (True, False, None)] == [Cell("holds", "good"), Cell("fails", "bad"), Cell("not judged")]

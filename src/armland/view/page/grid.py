@@ -37,6 +37,9 @@ def holds(verdict: bool | None) -> Cell:
 def grid_of(table: Table) -> Grid:
     """A table of the terminal as one of a page: the same words, verdicts with their mark."""
     columns = [[_plain(c) for c in column.cells] for column in table.columns]
+    for k, words in enumerate(columns[0]):
+        # A row without a name is of what the row above is of.
+        columns[0][k] = words or columns[0][max(k - 1, 0)]
     rows = [tuple(MARKED.get(words, words) for words in row) for row in zip(*columns, strict=True)]
     left = tuple(k for k, column in enumerate(table.columns) if column.justify == "left")
     # A column without a name is one of verdicts, or of what the rows are of.
