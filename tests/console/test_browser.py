@@ -104,8 +104,8 @@ class View:
         if folder := os.environ.get("ARMLAND_SCREENSHOTS"):
             # Drawn in software a scene is late.
             self.page.wait_for_timeout(2500)
-            for close in self.page.locator(".mantine-Notification-closeButton").all():
-                close.click()
+            close = "document.querySelectorAll('.mantine-Notification-closeButton').forEach(b => b.click())"
+            self.page.evaluate(close)
             self.page.screenshot(path=str(Path(folder) / f"{self.name}_{step}.png"))
 
     def covered(self) -> float:

@@ -99,9 +99,9 @@ def test_a_deck_carries_the_floor_above_water_that_moves(server, landing_scenari
 
     scenario = landing_scenario.replaced({"sea": {"state": "ss1"}})
     stage = Stage(server.viser.scene, build_scene(scenario, "free"), "/sea", 5.0, scenario)
-    before = stage._water._mesh.vertices.copy()
+    before = stage._water._meshes[0].vertices.copy()
     stage.wave(2.0)
-    assert np.abs(stage._water._mesh.vertices - before).max() > 0.01
+    assert np.abs(stage._water._meshes[0].vertices - before).max() > 0.01
     names = {getattr(m, "name", "") for m in server.viser._websock_server._broadcast_buffer.message_from_id.values()}
     assert "/sea/sea" in names
     assert any(n.startswith("/sea/body_") and n.endswith("/floor") for n in names)

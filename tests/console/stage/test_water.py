@@ -9,7 +9,7 @@ from armland.view.film.water import FREEBOARD_M
 
 
 def heights(water) -> np.ndarray:
-    return np.array(water._mesh.vertices).reshape(CELLS, CELLS, 3)[..., 2]
+    return np.array(water._meshes[0].vertices).reshape(CELLS, CELLS, 3)[..., 2]
 
 
 @pytest.fixture

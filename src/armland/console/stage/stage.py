@@ -178,7 +178,7 @@ class Stage:
             cell_color=(165, 170, 176),
             section_color=(125, 130, 138),
             plane_color=(150, 156, 164),
-            plane_opacity=0.35 if scene.deck_qpos >= 0 else 0.0,
+            plane_opacity=0.9 if scene.deck_qpos >= 0 else 0.0,
         )
 
     def _add_eye(self, camera: Camera) -> Any:

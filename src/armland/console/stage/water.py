@@ -17,7 +17,7 @@ HALF_M, CELLS = 14.0, 36
 EVERY_S = 0.1
 """Between two surfaces: waves that move a hull take seconds."""
 
-COLOR = (60, 120, 160)
+COLOR, LINES = (52, 104, 134), (96, 146, 172)
 
 
 class Water:
@@ -36,24 +36,30 @@ class Water:
         self._shown = (-np.inf, 1.0)
         x, y = np.meshgrid(self._at, self._at, indexing="ij")
         self._points = np.stack([x, y, np.full_like(x, -self._base[2] - FREEBOARD_M)], axis=2)
-        self._mesh: Any = api.add_mesh_simple(
-            f"{name}/sea",
-            self._vertices(0.0, 1.0),
-            _triangles(),
-            color=COLOR,
-            opacity=0.6,
-            side="double",
-            flat_shading=True,
-            cast_shadow=False,
-            receive_shadow=False,
-        )
+        # Slopes of a few degrees are seen by lines, hardly by light.
+        self._meshes: list[Any] = [
+            api.add_mesh_simple(
+                f"{name}/sea{end}",
+                self._vertices(0.0, 1.0),
+                _triangles(),
+                color=color,
+                wireframe=end != "",
+                side="double",
+                flat_shading=end == "",
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+            for end, color in (("", COLOR), ("_lines", LINES))
+        ]
 
     def show(self, time: float, share: float) -> None:
         """Be as at a time, s, with a share of the waves' height."""
         before, of = self._shown
         if self._waves is not None and (abs(time - before) >= EVERY_S or share != of):
             self._shown = time, share
-            self._mesh.vertices = self._vertices(time, share)
+            vertices = self._vertices(time, share)
+            for mesh in self._meshes:
+                mesh.vertices = vertices
 
     def _vertices(self, time: float, share: float) -> Array:
         points = self._points.copy()
