@@ -40,7 +40,7 @@ TURN_S = 2e-4
 REST_EVERY = 4
 """Frames between two looks of plots and texts."""
 
-SIGHT_EVERY = 8
+SIGHT_EVERY = 10
 """Frames between two pictures of what the camera sees."""
 
 WINDOW = 12 * 30
