@@ -22,8 +22,9 @@ class FakePage:
             additional_headers=headers,
             max_size=None,
             compression=None,
-            # It reads nothing, and need not say goodbye.
+            # It reads nothing, need not say goodbye, and asks for no sign of life, which a busy machine gives late.
             close_timeout=0.1,
+            ping_interval=None,
         )
 
     def send(self, kind: str, **fields: object) -> None:

@@ -88,19 +88,33 @@ def test_without_its_scenario_the_plots_are_shown(recording, log_file, change: d
     np.testing.assert_array_equal(made.curves.time, recording.curves.time)
 
 
-def test_without_the_arm_s_file_the_plots_are_shown(recording, log_file) -> None:
+def without_arm(recording, log_file) -> Recording:
     text = recording.log.metadata["scenario"].replace('"lwr4.xml"', '"gone.xml"')
+    return changed(recording.log, log_file, scenario=text)
+
+
+def test_without_the_arm_s_file_all_else_is_shown(recording, log_file) -> None:
+    made = without_arm(recording, log_file)
+    assert made.armless
+    assert "gone.xml" in made.notes[-1]
+    assert made.notes[-1].endswith("All but the arm is shown.")
+
+
+def test_without_the_uav_s_file_too_the_plots_are_shown(recording, log_file) -> None:
+    text = recording.log.metadata["scenario"].replace('"ardrone2.xml"', '"gone_too.xml"')
     made = changed(recording.log, log_file, scenario=text)
     assert made.scene is None
-    assert "gone.xml" in made.notes[-1]
+    assert not made.armless
+    assert "gone_too.xml" in made.notes[-1]
+    assert made.notes[-1].endswith("Its plots are shown.")
 
 
-def test_an_arm_of_other_joints_has_no_picture(recording, log_file) -> None:
+def test_of_an_arm_of_other_joints_all_else_is_shown(recording, log_file) -> None:
     from armland.records import tick_layout
 
     log = Log(np.zeros(100, tick_layout(6)), recording.log.metadata, {}, True)
     made = Recording(log, log_file)
-    assert made.scene is None
+    assert made.armless
     assert "not as many joints" in made.notes[-1]
 
 
@@ -115,6 +129,16 @@ def test_a_damaged_script_is_said_and_left_out(recording, log_file) -> None:
     made = Recording(log, log_file)
     assert made.told == ()
     assert "what the operator did is not shown" in made.notes[-1]
+
+
+def test_the_command_flies_the_same_again(recording, log_file) -> None:
+    assert recording.command.startswith("armland land --seed 1")
+    assert "--operator" not in recording.command
+    script = b'{"tick": 1500, "do": "sea", "value": 0.5}\n{"tick": 2500, "do": "hold"}\n'
+    steered = Recording(Log(recording.ticks, recording.log.metadata, {SCRIPT_NAME: script}, True), log_file)
+    assert steered.command.endswith(f"--operator {log_file}")
+    assert [steered.share_of_sea(t) for t in (1.0, 2.0, 9.0)] == [1.0, 0.5, 0.5]
+    assert changed(recording.log, log_file, seed=None).command == ""
 
 
 def test_thresholds(recording) -> None:

@@ -165,6 +165,21 @@ def test_an_experiment_on_the_hinge_is_shown(server, fake_page, wait_until, pape
         made.stop()
 
 
+def test_without_the_arm_s_file_the_rest_of_the_scene_plays(server, recording, fake_page, wait_until) -> None:
+    text = recording.log.metadata["scenario"].replace('"lwr4.xml"', '"gone.xml"')
+    metadata = recording.log.metadata | {"scenario": text}
+    made = Served(server, [Recording(Log(recording.ticks, metadata, {}, True), recording.file)], fake_page(server))
+    try:
+        made.page.set(made.control("time (s)"), 6.0)
+        ((_, stage),) = made.replay._stages
+        uav = stage._frames[recording.scene.uav_body]
+        assert wait_until(lambda: np.allclose(uav.wxyz, recording.at(6.0)["truth"]["quat"], atol=1e-9))
+        assert not stage.poses.absent & set(stage._frames)
+        assert wait_until(lambda: "marker at" in made.replay._sight.content)
+    finally:
+        made.stop()
+
+
 def test_a_log_without_picture_still_plays(server, recording, fake_page, wait_until) -> None:
     metadata = {k: v for k, v in recording.log.metadata.items() if k in ("period_ns", "joints", "version")}
     bare = Recording(Log(recording.ticks, metadata, {}, False), recording.file)

@@ -128,3 +128,93 @@ def make_row() -> Callable[..., dict]:
         }
 
     return make
+
+
+@pytest.fixture(scope="session")
+def made_up_margins():
+    """Margins of four deviations, and a pair."""
+    from armland.experiments.margins.corners import chosen, largest
+    from armland.experiments.margins.screening import Listed, Screening
+    from armland.experiments.margins.search import Bracket, Failure
+    from armland.experiments.margins.study import Margin, Margins, Terms
+    from armland.view.figures.margins import LEAST
+
+    mass, thrust, drag, loss = chosen("uav.mass,uav.thrust,uav.drag,link.loss")
+    why = Failure(2, "limits violated: too fast", "lost")
+    margins = (
+        Margin(loss, Bracket(0.0, LEAST, why, 6), largest(loss)),
+        Margin(mass, Bracket(2.0, 2.4, why, 6), largest(mass)),
+        Margin(drag, Bracket(largest(drag), None, None, 4), largest(drag)),
+        Margin(thrust, Bracket(8.0, None, None, 4), largest(thrust)),
+    )
+    pair = Listed(("uav.mass", "link.loss"), ("high", "there"), 0.31, 0.02, True)
+    return Margins(Terms(), (1, 2, 3), margins, Screening(24, 20, 1.0, (pair._replace(rows=("uav.mass",)),), (pair,)))
+
+
+@pytest.fixture(scope="session")
+def made_up_envelope():
+    """An envelope of few points."""
+    from armland.experiments.envelope.bench import Capture
+    from armland.experiments.envelope.bounds import Allowed, Axis, Edge, Map
+    from armland.experiments.envelope.interception import Tracked
+    from armland.experiments.envelope.study import EnvelopeStudy, Flown
+
+    directions = [0.0, 0.5 * np.pi, np.pi]
+
+    def axis(name, bound):
+        edges = tuple(Edge(bound, "3 of 4 pads", w) for w in directions)
+        return Axis(name, edges, edges, 1.1 * bound, bound)
+
+    bounds = {"offset": 0.0065, "speed": 0.2, "tilt": 0.4, "plate": 0.3, "fastest": 0.6, "slowest": 0.01}
+    boundary = (Edge(0.2, "3 of 4 pads"), Edge(0.1, "3 of 4 pads"))
+    maps = (
+        Map("offset", "speed", (0.0, 0.008), boundary, (0.2, 0.1), (0.004, 0.06)),
+        Map("offset", "tilt", (0.0, 0.008), boundary, (0.2, 0.1), (0.004, 0.1)),
+        Map("closing", "speed", (0.0, 0.8), boundary, (0.2, 0.1), (0.16, 0.06)),
+    )
+    limits = dict.fromkeys(
+        ("offset", "relative speed", "joint speed", "joint torque", "torque rate", "track filter"), 0.1
+    )
+    held = Capture(True, "held", 4, 15.0, 6.0, 0.005, 0.03)
+    return EnvelopeStudy(
+        allowed=Allowed(0.004, 0.06, 0.1, 0.015, 0.04, 0.16),
+        closing=0.1,
+        axes=tuple(axis(k, v) for k, v in bounds.items()),
+        maps=maps,
+        corners=((0.0, held),),
+        flown=(Flown(1, 0.001, 0.02, 0.09, 0.2, 1.0), Flown(2, 0.002, 0.01, 0.1, 0.1, 0.5)),
+        tracked=tuple(Tracked(f, 0.01, 0.1 * f, 0.05, {**limits, "offset": 0.04 / f}) for f in (0.5, 1.0)),
+        captures=10,
+    )
+
+
+@pytest.fixture(scope="session")
+def made_up_spread():
+    """Both demonstrators at a few points."""
+    from armland.experiments.spread import E1_LARGEST, E2_LARGEST, PAPER, RATIO, Demonstrator, Sensitivity, Spread
+
+    def point(e1, e2):
+        return dict.fromkeys(PAPER, 0.5) | {E1_LARGEST: e1, E2_LARGEST: e2}
+
+    both = [
+        Demonstrator(n, point(9.0, 7.0), [point(4.0, 8.0), point(170.0, 8.0)], {"E2 overshoots less": 0.75})
+        for n in ("fitted", "bench")
+    ]
+    return Spread(both, [Sensitivity("control.thrust_n", 4.7, point(9.0, 6.7) | {RATIO: 0.99}, {"+1 N": 1.33})])
+
+
+@pytest.fixture(scope="session")
+def made_up_factorial():
+    """One law with every board under every arm."""
+    from armland.experiments.factorial import ARMS, BOARDS, Cell, Factorial
+    from armland.experiments.judge.tracking import Metrics
+
+    return Factorial(
+        [
+            Cell(
+                "E3", board, arm, Metrics(10.0 * i + j + 1.0, 0.0, [0.0] * 3, [1e-3 * (j + 1)] * 3, [0.0] * 3, 0.0, 0.0)
+            )
+            for i, board in enumerate(BOARDS)
+            for j, arm in enumerate(ARMS)
+        ]
+    )

@@ -8,7 +8,7 @@ import numpy as np
 
 from armland.console.gauges import name_of
 from armland.console.plots import Curves, curves_of, thin
-from armland.console.stage.poses import scene_of
+from armland.console.stage.poses import armless_scene_of, scene_of
 from armland.errors import LogError
 from armland.experiments.judge.deck import seen_from_deck
 from armland.experiments.operator.message import Message
@@ -18,7 +18,9 @@ from armland.plant.wind.profile import height_of_catch, speed_at, towards
 from armland.records import Records
 from armland.rotations import Array
 from armland.runtime.log import Log
+from armland.runtime.recorder import SCENARIO_NAME
 from armland.scenario import Scenario
+from armland.view.page.again import again
 
 
 class Event(NamedTuple):
@@ -52,6 +54,8 @@ class Recording:
         self.rate_hz = max(1, round(1.0 / self.period_s))
         self.phases, self.faults = self._names("phases"), self._names("faults")
         self.scenario = self._scenario()
+        self.armless = False
+        """Whether the scene's arm is none that flew."""
         self.scene = self._scene()
         # Charts show motion against the deck, as the judge sees it.
         seen = seen_from_deck(thin(self.ticks, self.rate_hz))
@@ -65,6 +69,15 @@ class Recording:
         """How the flight is told from another."""
         m = self.log.metadata
         return f"{m.get('experiment') or m.get('mission', 'run')} seed {m.get('seed', '?')} ({self.file.stem})"
+
+    @property
+    def command(self) -> str:
+        """The command that flies the same again; empty where the log says too little."""
+        more = ("--operator", str(self.file)) if self.told else ()
+        try:
+            return again(self.log.metadata, self.log.attachments.get(SCENARIO_NAME), more).command
+        except (LookupError, TypeError, ValueError):
+            return ""
 
     @property
     def begin(self) -> float:
@@ -110,6 +123,10 @@ class Recording:
         scenario = self.scenario.model_copy(update={"air": air})
         return speed_at(scenario, height_of_catch(scenario)) * towards(scenario) if air.wind_mps > 0.0 else None
 
+    def share_of_sea(self, time: float) -> float:
+        """Share of the deck's motion that the operator asked for until then, 1 where he said nothing."""
+        return next((m.value for m in reversed(self.told) if m.do == "sea" and m.tick * self.period_s <= time), 1.0)
+
     def _names(self, what: str) -> tuple[str, ...]:
         try:
             return self.log.names(what)
@@ -124,16 +141,21 @@ class Recording:
             return None
 
     def _scene(self) -> Scene | None:
+        metadata, name = self.log.metadata, self.file.name
         try:
-            scene = scene_of(self.log.metadata)
-        except LogError as lost:
-            self.notes.append(f"{self.file.name}: {lost}. Its plots are shown.")
+            scene = scene_of(metadata)
+            if scene.joints == self.ticks["truth"]["q"].shape[1]:
+                return scene
+            lost = LogError("its arm has not as many joints as its scenario's")
+        except LogError as no:
+            lost = no
+        try:
+            scene = armless_scene_of(metadata)
+        except LogError:
+            self.notes.append(f"{name}: {lost}. Its plots are shown.")
             return None
-        if scene.joints != self.ticks["truth"]["q"].shape[1]:
-            self.notes.append(
-                f"{self.file.name}: its arm has not as many joints as its scenario's. Its plots are shown."
-            )
-            return None
+        self.armless = True
+        self.notes.append(f"{name}: {lost}. All but the arm is shown.")
         return scene
 
     def _told(self) -> tuple[Message, ...]:

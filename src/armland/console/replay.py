@@ -17,7 +17,8 @@ from armland.console.gauges import (
     shares_html,
     strip_html,
 )
-from armland.console.page.look import in_order, look, plots_panel, put_camera
+from armland.console.page.copying import command_html
+from armland.console.page.look import in_order, look, plots_panel, put, put_camera
 from armland.console.page.server import PageServer
 from armland.console.plots import Charts, Curves, cut
 from armland.console.recording import Event, Recording, threshold
@@ -65,7 +66,9 @@ class Replay:
         self._build_stages()
         self._build_controls(gui)
         self._status = gui.add_html("")
+        gui.add_html("".join(command_html(run.command) for run in self._runs if run.command))
         with plots_panel(server.viser):
+            self._sight = gui.add_html("")
             self._charts = Charts(gui, [str(i) for i, _ in enumerate(self._runs, start=1)])
 
     @property
@@ -113,10 +116,9 @@ class Replay:
         for i, run in enumerate(self._runs):
             if run.scene is None:
                 continue
-            camera = None if run.scenario is None or run.scene.bond != "free" else run.scenario.camera
             envelope = threshold(run.log.metadata, "align_offset_m")
             api = self._server.viser.scene
-            stage = Stage(api, run.scene, f"/flight_{i + 1}", run.weight, camera, envelope, ghost=i > 0)
+            stage = Stage(api, run.scene, f"/flight_{i + 1}", run.weight, run.scenario, envelope, i > 0, run.armless)
             self._stages.append((run, stage))
         if self._stages:
             put_camera(self._server.viser, np.array(self._stages[0][0].at(0.0)["truth"]["ee"]))
@@ -175,6 +177,7 @@ class Replay:
                 tick = run.at(self.time)
                 stage.show(tick, run.wind(self.time))
                 stage.draw_path(tick["truth"], run.ahead(self.time))
+                stage.wave(self.time, run.share_of_sea(self.time))
 
     def _show_rest(self, all_of_it: bool) -> None:
         if not all_of_it:
@@ -188,6 +191,8 @@ class Replay:
         flown = runs_of(np.append(run.curves.phase[:k], phase))
         self._strip.content = strip_html(run.phases, flown, int(phase))
         self._status.content = self._status_html(run)
+        if self._stages and self._stages[0][0] is run:
+            put(self._sight, self._stages[0][1].sight(tick, run.period_s))
         curves, other = run.curves, self._other
         if self._window.value != WHOLE:
             begin = max(run.begin, min(self.time - 0.5 * WINDOW_S, run.end - WINDOW_S))

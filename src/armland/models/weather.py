@@ -35,6 +35,9 @@ LENGTH_M, WAITS = 44.0, 6.0
 """Length of turbulence along the wind at 20 ft, h/(0.177 + 0.000823 h)^1.2 in feet: over the mean wind it is the time that a gust takes
 to pass. For how many of them a run has time beyond one in calm air."""
 
+LONGEST_S = 300.0
+"""Longest run that wind asks for, s."""
+
 RISES_MPS, FOUND_S = 0.4, 0.5
 """Speed with which a hull in sea state 3 rises, mean of its highest third; time until a UAV that hovers in W is seen and guided."""
 
@@ -100,7 +103,8 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
     # Recorded winds and decks last as long as they last.
     longer = 0.0 if scenario.air.trace or scenario.sea.trace else WAITS * LENGTH_M / wind.mean
     return {
-        "run.duration_s": scenario.run.duration_s + longer,
+        # Weak wind has long gusts, and takes no UAV out of view.
+        "run.duration_s": max(scenario.run.duration_s, min(scenario.run.duration_s + longer, LONGEST_S)),
         "place.start_above_m": above + down,
         "onboard.hover.tilt_max_rad": max(own.tilt_max_rad, lean),
         **kept,

@@ -58,7 +58,7 @@ def test_a_flight_is_started_watched_and_judged(console, wait_until) -> None:
     time = console._charts._charts[0].data[0]
     assert time[-1] == pytest.approx(last["tick"] * 1e-3, abs=0.04)
     assert time[-1] - time[0] < 12.1
-    assert console.controls.again.value == "armland run landing landing --seed 1 --set run.duration_s=45.0"
+    assert ">armland run landing landing --seed 1 --set run.duration_s=45.0</code>" in console._again.content
 
 
 def test_a_fault_is_foreseen_thrown_in_and_its_outcome_told(console, wait_until) -> None:
@@ -74,7 +74,7 @@ def test_a_fault_is_foreseen_thrown_in_and_its_outcome_told(console, wait_until)
     assert "uav_silent thrown into approach: found uav_silent in " in console.controls.outcomes.content
     assert "went to abort" in console.controls.outcomes.content
     assert wait_until(lambda: console.pilot.log is not None, SECONDS)
-    assert wait_until(lambda: f"--operator {console.pilot.log}" in console.controls.again.value)
+    assert wait_until(lambda: f"--operator {console.pilot.log}</code>" in console._again.content)
     assert [m.do for m in read_script(console.pilot.log)] == ["fault"]
 
 

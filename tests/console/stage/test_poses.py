@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from armland.console.stage.poses import Poses, forces_from, rotation, scene_of, to_world
+from armland.console.stage.poses import Poses, armless_scene_of, forces_from, rotation, scene_of, to_world
 from armland.errors import LogError
 from armland.experiments.episode import fly
 from armland.plant.scene.eye import CAMERA
@@ -61,6 +61,25 @@ def test_another_arm_is_refused(recording) -> None:
     poses = Poses(scene_of(recording.log.metadata))
     with pytest.raises(LogError, match="6 joints, the arm of its scenario 7"):
         poses.set(np.zeros(1, tick_layout(6))["truth"][0])
+
+
+@pytest.mark.parametrize("time", [0.5, 4.0, 9.0])
+def test_without_the_arm_all_that_the_end_effector_carries_stands_as_with_it(recording, time) -> None:
+    """The log's own arm is the oracle: the same scene, its joints unknown."""
+    truth = recording.at(time)["truth"]
+    whole, bare = Poses(recording.scene), Poses(armless_scene_of(recording.log.metadata), armless=True)
+    for poses in (whole, bare):
+        poses.set(truth)
+    assert whole.absent == frozenset()
+    assert {bare.model.body(b).name.split("/")[0] for b in bare.absent} == {"arm"}
+    for body in range(whole.model.nbody):
+        if body not in bare.absent:
+            for got, wanted in zip(bare.bodies, whole.bodies, strict=True):
+                wanted = wanted[body] * (1.0 if got[body] @ wanted[body] >= 0.0 else -1.0)
+                np.testing.assert_allclose(got[body], wanted, atol=1e-9)
+    np.testing.assert_allclose(bare.end_effector, truth["ee"], atol=1e-9)
+    for got, wanted in zip(bare.camera(CAMERA), whole.camera(CAMERA), strict=True):
+        np.testing.assert_allclose(got, wanted, atol=1e-9)
 
 
 def test_damaged_numbers_are_no_picture_and_no_crash(recording) -> None:

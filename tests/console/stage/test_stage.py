@@ -8,8 +8,7 @@ from armland.console.stage.stage import LOST, SEEN, WEIGHT_M, Stage
 
 @pytest.fixture
 def stage(server, recording):
-    camera = recording.scenario.camera
-    return Stage(server.viser.scene, recording.scene, "/one", 10.0, camera, 0.02)
+    return Stage(server.viser.scene, recording.scene, "/one", 10.0, recording.scenario, 0.02)
 
 
 def test_bodies_stand_where_the_tick_has_them(stage, recording) -> None:
@@ -60,6 +59,16 @@ def test_the_camera_says_whether_it_sees(stage, recording) -> None:
         assert stage._eye.color == color
 
 
+def test_what_the_camera_sees_is_of_the_tick_that_is_shown(stage, recording, server) -> None:
+    pictures = []
+    for time in (2.0, 7.0):
+        stage.show(recording.at(time))
+        pictures.append(stage.sight(recording.at(time), recording.period_s))
+    assert pictures[0] != pictures[1]
+    blind = Stage(server.viser.scene, recording.scene, "/blind", 10.0)
+    assert blind.sight(recording.at(2.0), recording.period_s) == ""
+
+
 def test_a_way_of_points(stage, recording) -> None:
     truth = recording.at(0.0)["truth"]
     way = np.array([[0.6, 0.0, 0.7], [0.6, 0.0, 0.8], [np.nan, 0.0, 0.0], [0.5, 0.0, 0.8]])
@@ -85,11 +94,14 @@ def test_a_second_flight_is_pale_and_has_no_floor_of_its_own(server, recording) 
     assert all(m.props.opacity == 0.3 for m in meshes)
 
 
-def test_a_deck_carries_the_floor_above_still_water(server, landing_scenario) -> None:
+def test_a_deck_carries_the_floor_above_water_that_moves(server, landing_scenario) -> None:
     from armland.plant.scene.composition import build_scene
 
-    scene = build_scene(landing_scenario.replaced({"sea": {"state": "ss1"}}), "free")
-    Stage(server.viser.scene, scene, "/sea", 5.0)
+    scenario = landing_scenario.replaced({"sea": {"state": "ss1"}})
+    stage = Stage(server.viser.scene, build_scene(scenario, "free"), "/sea", 5.0, scenario)
+    before = stage._water._meshes[0].vertices.copy()
+    stage.wave(2.0)
+    assert np.abs(stage._water._meshes[0].vertices - before).max() > 0.01
     names = {getattr(m, "name", "") for m in server.viser._websock_server._broadcast_buffer.message_from_id.values()}
     assert "/sea/sea" in names
     assert any(n.startswith("/sea/body_") and n.endswith("/floor") for n in names)

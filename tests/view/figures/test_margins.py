@@ -2,32 +2,15 @@
 
 import pytest
 
-from armland.experiments.margins.corners import chosen, largest
-from armland.experiments.margins.screening import Listed, Screening
-from armland.experiments.margins.search import Bracket, Failure
-from armland.experiments.margins.study import Margin, Margins, Terms
+from armland.experiments.margins.corners import chosen
 from armland.view.figures.canvas import paper_style
-from armland.view.figures.margins import COLORS, LEAST, draw_margins, margins_figure
+from armland.view.figures.margins import COLORS, draw_margins, margins_figure
 from armland.view.tables.margins import print_margins, range_in_words
 
 
-@pytest.fixture
-def made_up():
-    mass, thrust, drag, loss = chosen("uav.mass,uav.thrust,uav.drag,link.loss")
-    why = Failure(2, "limits violated: too fast", "lost")
-    margins = (
-        Margin(loss, Bracket(0.0, LEAST, why, 6), largest(loss)),
-        Margin(mass, Bracket(2.0, 2.4, why, 6), largest(mass)),
-        Margin(drag, Bracket(largest(drag), None, None, 4), largest(drag)),
-        Margin(thrust, Bracket(8.0, None, None, 4), largest(thrust)),
-    )
-    pair = Listed(("uav.mass", "link.loss"), ("high", "there"), 0.31, 0.02, True)
-    return Margins(Terms(), (1, 2, 3), margins, Screening(24, 20, 1.0, (pair._replace(rows=("uav.mass",)),), (pair,)))
-
-
-def test_bars_stand_in_order_and_end_where_it_holds(made_up):
+def test_bars_stand_in_order_and_end_where_it_holds(made_up_margins):
     with paper_style():
-        (axes,) = margins_figure(made_up).axes
+        (axes,) = margins_figure(made_up_margins).axes
     assert [t.get_text() for t in axes.get_yticklabels()] == ["link.loss", "uav.mass", "uav.drag", "uav.thrust"]
     assert axes.get_ylim()[0] > axes.get_ylim()[1], "the first is on top"
     ends = [(p.get_y() + 0.5 * p.get_height(), p.get_x() + p.get_width()) for p in axes.patches]
@@ -35,9 +18,9 @@ def test_bars_stand_in_order_and_end_where_it_holds(made_up):
     assert [e for e in ends if round(e[0]) == 3] == [(3.0, pytest.approx(8.0))]
 
 
-def test_arrow_where_nothing_failed_and_stroke_at_the_bound(made_up):
+def test_arrow_where_nothing_failed_and_stroke_at_the_bound(made_up_margins):
     with paper_style():
-        (axes,) = margins_figure(made_up).axes
+        (axes,) = margins_figure(made_up_margins).axes
     arrows = [line.get_ydata()[0] for line in axes.lines if line.get_marker() == ">"]
     assert arrows == [3]
     bounds = {round(float(line.get_xdata()[0]), 3) for line in axes.lines if line.get_linewidth() == 2.0}
@@ -46,9 +29,9 @@ def test_arrow_where_nothing_failed_and_stroke_at_the_bound(made_up):
     assert {round(float(line.get_xdata()[0]), 3) for line in axes.lines} >= {0.5, 1.0, 2.0}
 
 
-def test_texts_say_what_held_and_why_it_failed(made_up):
+def test_texts_say_what_held_and_why_it_failed(made_up_margins):
     with paper_style():
-        (axes,) = margins_figure(made_up).axes
+        (axes,) = margins_figure(made_up_margins).axes
     texts = {t.get_text() for t in axes.texts}
     assert {"±0.14", "not 0.05", "too fast", "published", "harsh", "mild"} <= texts
 
@@ -58,13 +41,13 @@ def test_every_device_has_a_colour_of_its_own():
     assert len(set(COLORS.values())) == len(COLORS)
 
 
-def test_files_are_written(made_up, tmp_path):
-    assert [p.name for p in draw_margins(tmp_path, made_up)] == ["margins.pdf", "margins.png"]
+def test_files_are_written(made_up_margins, tmp_path):
+    assert [p.name for p in draw_margins(tmp_path, made_up_margins)] == ["margins.pdf", "margins.png"]
     assert all(p.stat().st_size > 5000 for p in tmp_path.iterdir())
 
 
-def test_table_has_every_margin_and_the_pair(made_up, capsys, tmp_path):
-    print_margins(made_up, tmp_path)
+def test_table_has_every_margin_and_the_pair(made_up_margins, capsys, tmp_path):
+    print_margins(made_up_margins, tmp_path)
     text = " ".join(capsys.readouterr().out.split())
     for words in (
         "link.loss alone, inside its published range",

@@ -11,8 +11,15 @@ from pathlib import Path
 
 import pytest
 
+from armland.experiments.campaign.summary import summarise
+from armland.experiments.episode import prepare
+from armland.experiments.judge.figures import bounds
+from armland.experiments.proof.verification import prove
+from armland.scenario import load_scenario
+from armland.view.page.analyses import envelope_sheet, factorial_sheet, margins_sheet, proof_sheet, spread_sheet
 from armland.view.page.flight import flight_sheet
 from armland.view.page.sheet import html
+from armland.view.page.study import campaign_sheet, comparison_sheet
 from armland.view.report import result_of
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or "/usr/bin/chromium"
@@ -60,6 +67,31 @@ def pages(landing_log, failed_log, tmp_path_factory) -> dict[str, Path]:
     return out
 
 
+@pytest.fixture(scope="module")
+def studies(request, made_up_spread, made_up_factorial, made_up_envelope, made_up_margins, tmp_path_factory):
+    """Pages of studies, of campaigns and of laws compared, by name."""
+    folder, out = tmp_path_factory.mktemp("studies"), {}
+    paper, compare, landing = (load_scenario(name) for name in ("paper", "compare", "landing"))
+    row = {"metrics": {"attitude_max_deg": 5.0, "position_rms_m": [1e-3] * 3, "position_max_m": [2e-3] * 3}}
+    laws = [{"condition": "as modelled", "law": law, "resting_swing_deg": 0.5, **row} for law in ("E2", "exact")]
+    claims = [{"claim": "E2 is better", "value": 0.5, "bound": [0.0, 1.0], "holds": True}]
+    flight = prepare(landing, "landing", seed=1)
+    rows = [request.getfixturevalue("make_row")(1 + i, 0.02 + 0.001 * i, success=i != 3) for i in range(6)]
+    limits = bounds(flight.brief)
+    for name, sheet in {
+        "spread": spread_sheet(made_up_spread, paper),
+        "factorial": factorial_sheet(made_up_factorial, compare),
+        "envelope": envelope_sheet(made_up_envelope, landing),
+        "margins": margins_sheet(made_up_margins, landing, []),
+        "proof": proof_sheet(prove(paper, samples=100), paper, 100),
+        "comparison": comparison_sheet({"rows": laws, "verdicts": claims}, compare, None),
+        "campaign": campaign_sheet(summarise(rows, limits), rows, limits, flight),
+    }.items():
+        out[name] = folder / f"{name}.html"
+        out[name].write_text(html(sheet), encoding="utf-8")
+    return out
+
+
 @pytest.fixture(params=VIEWS)
 def view(request, browser):
     """A window with the network off, and what it asked for and complained of."""
@@ -78,8 +110,20 @@ def view(request, browser):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["landing", "failed"])
 def test_axe_finds_no_fault(pages, view, axe, name) -> None:
+    check(pages[name], view, axe)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["spread", "factorial", "envelope", "margins", "proof", "comparison", "campaign"])
+def test_axe_finds_no_fault_in_a_study(studies, view, axe, name) -> None:
+    check(studies[name], view, axe)
+
+
+def check(file: Path, view, axe: str) -> None:
+    """No fault, nothing beside the window, nothing asked for, and below 3 MB."""
     page, heard = view
-    page.goto(pages[name].as_uri())
+    assert file.stat().st_size < 3e6
+    page.goto(file.as_uri())
     assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
     page.evaluate(axe)
     found = page.evaluate("axe.run()")

@@ -58,3 +58,5 @@ def test_every_cell_is_under_its_arm(wide, capsys, tmp_path):
     (row, _) = (line for line in text.splitlines() if "as in split" in line)
     assert [cell.strip() for cell in row.split("│")[3:-1]] == ["10.00", "11.00", "12.00", "13.00", "14.00"]
     assert "2.00/2.00/2.00" in text
+    # A unit in brackets is not taken for markup.
+    assert "Position error, RMS x/y/z [mm]" in text

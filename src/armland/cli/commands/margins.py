@@ -66,6 +66,8 @@ def margins(**given: Any) -> None:
     prepare(loaded, given["mission"])
     from armland.experiments.margins.study import Terms, study
     from armland.view.figures.margins import draw_margins
+    from armland.view.page.analyses import margins_sheet
+    from armland.view.page.sheet import write_page
     from armland.view.tables.margins import print_margins
 
     terms = Terms(**{name: given[name] for name in Terms._fields})
@@ -78,6 +80,20 @@ def margins(**given: Any) -> None:
             found.result(),
             lambda out: print_margins(found, out),
             lambda folder: draw_margins(folder, found),
+            lambda folder: write_page(folder, margins_sheet(found, loaded, _chosen(given))),
         )
 
-    publish(given, "margins.json", ("margins.p??",), work)
+    publish(given, "margins.json", ("margins.p??", "report.html"), work)
+
+
+def _chosen(given: dict[str, Any]) -> list[str]:
+    # The options that say what is varied and how, for the command that does it again.
+    rows = ["--rows", given["rows"]] if given["rows"] else []
+    seed = ["--seed", str(given["seed"])] if given["seed"] is not None else []
+    named = ("mission", "around", "seeds", "share", "level")
+    return [
+        *rows,
+        *(w for name in named for w in (f"--{name}", f"{given[name]}")),
+        *seed,
+        *([] if given["pairs"] else ["--no-pairs"]),
+    ]

@@ -133,6 +133,8 @@ def _spread(fitted: "Scenario", bench: "Scenario", given: dict[str, Any], consol
     from armland.experiments.spread import spread
     from armland.scenario import load_scenario
     from armland.view.figures.spread import draw_spread
+    from armland.view.page.analyses import spread_sheet
+    from armland.view.page.sheet import write_page
     from armland.view.tables.spread import print_spread
 
     def work(_: Results) -> Work:
@@ -140,20 +142,32 @@ def _spread(fitted: "Scenario", bench: "Scenario", given: dict[str, Any], consol
             bias_n = load_scenario("landing").imperfections.force_bias_n
             found = spread(fitted, bench, given["samples"], bias_n, tell)
         return Work(
-            True, found.result(), lambda out: print_spread(found, out), lambda folder: draw_spread(folder, found)
+            True,
+            found.result(),
+            lambda out: print_spread(found, out),
+            lambda folder: draw_spread(folder, found),
+            lambda folder: write_page(folder, spread_sheet(found, fitted)),
         )
 
-    publish(given, "spread.json", ("spread.p??",), work)
+    publish(given, "spread.json", ("spread.p??", "report.html"), work)
 
 
 def _factorial(scenario: "Scenario", given: dict[str, Any], console: Console) -> NoReturn:
     from armland.experiments.factorial import cross
+    from armland.view.page.analyses import factorial_sheet
+    from armland.view.page.sheet import write_page
     from armland.view.tables.spread import print_factorial
 
     def work(_: Results) -> Work:
         with progress_bar(console) as bar:
             task = bar.add_task("laws and boards", total=None)
             found = cross(scenario, lambda arm, done, n: bar.update(task, completed=done, total=n, description=arm))
-        return Work(True, found.result(), lambda out: print_factorial(found, out))
+        return Work(
+            True,
+            found.result(),
+            lambda out: print_factorial(found, out),
+            None,
+            lambda folder: write_page(folder, factorial_sheet(found, scenario)),
+        )
 
-    publish(given, "factorial.json", (), work)
+    publish(given, "factorial.json", ("report.html",), work)

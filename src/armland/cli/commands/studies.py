@@ -52,6 +52,8 @@ def verify(**given: Any) -> None:
     from armland.experiments.proof.attribution import save_channels
     from armland.experiments.proof.verification import prove
     from armland.view.figures.proof import draw_proof_figures
+    from armland.view.page.analyses import proof_sheet
+    from armland.view.page.sheet import write_page
     from armland.view.tables.proof import print_proof
 
     def work(results: Results) -> Work:
@@ -61,10 +63,14 @@ def verify(**given: Any) -> None:
             save_channels(channels, results.folder / f"proof_{name}.csv")
         result = proof.result()
         return Work(
-            proof.holds, result, lambda out: print_proof(result, out), lambda folder: draw_proof_figures(folder, proof)
+            proof.holds,
+            result,
+            lambda out: print_proof(result, out),
+            lambda folder: draw_proof_figures(folder, proof),
+            lambda folder: write_page(folder, proof_sheet(proof, loaded, given["samples"])),
         )
 
-    publish(given, "result.json", ("*.mcap", "proof_*"), work)
+    publish(given, "result.json", ("*.mcap", "proof_*", "report.html"), work)
 
 
 @options.taken(
@@ -83,6 +89,8 @@ def envelope(**given: Any) -> None:
     from armland.experiments.envelope import study
     from armland.mission.plan import plan
     from armland.view.figures.envelope import draw_envelope
+    from armland.view.page.analyses import envelope_sheet
+    from armland.view.page.sheet import write_page
     from armland.view.tables.studies import print_envelope
 
     plan(loaded, "landing")
@@ -95,9 +103,10 @@ def envelope(**given: Any) -> None:
             found.result(),
             lambda out: print_envelope(found, out),
             lambda folder: draw_envelope(folder, found),
+            lambda folder: write_page(folder, envelope_sheet(found, loaded)),
         )
 
-    publish(given, "envelope.json", ("envelope.*",), work)
+    publish(given, "envelope.json", ("envelope.*", "report.html"), work)
 
 
 @options.taken(

@@ -19,7 +19,8 @@ from armland.console.live.choices import Choices
 from armland.console.live.controls import Controls
 from armland.console.live.forecast import AT_ONCE, Thrown, end_of, forecast, outcome, table_html, waits_html
 from armland.console.live.pilot import Now, Pilot, Steered, drained, joined_rows
-from armland.console.page.look import look, plots_panel, put_camera
+from armland.console.page.copying import command_html
+from armland.console.page.look import look, plots_panel, put, put_camera
 from armland.console.page.server import PageServer
 from armland.console.plots import Charts, curves_of
 from armland.console.stage.stage import Stage
@@ -38,6 +39,9 @@ TURN_S = 2e-4
 
 REST_EVERY = 4
 """Frames between two looks of plots and texts."""
+
+SIGHT_EVERY = 10
+"""Frames between two pictures of what the camera sees."""
 
 WINDOW = 12 * 30
 """Points of the plots: 12 s."""
@@ -63,6 +67,7 @@ class Console:
         self._stage: Stage | None = None
         self._rows: deque[Records] = deque(maxlen=WINDOW)
         self._phases: list[int] = []
+        self._begun: list[int] = []
         self._thrown: deque[Thrown] = deque(maxlen=20)
         self._outcomes: deque[str] = deque(maxlen=5)
         self._fault, self._number, self._asked = 0, 0, (0.0, -1.0)
@@ -73,8 +78,10 @@ class Console:
         self.controls = Controls(gui, pilot, first, self.say)
         self.controls.picked, self.controls.thrown = self._forecast, self._note_thrown
         self._gauges = gui.add_html("")
+        self._again = gui.add_html("")
         self.controls.build_rest()
         with plots_panel(server.viser):
+            self._sight = gui.add_html("")
             self._charts = Charts(gui, ["now"])
         put_camera(server.viser, np.array([0.6, 0.0, 0.8]))
 
@@ -98,14 +105,18 @@ class Console:
                     self._show_texts(None)
                 continue
             with self._server.viser.atomic():
-                self._show(self._flight.now, frame % REST_EVERY == 0)
+                self._show(self._flight.now, frame)
 
-    def _show(self, now: Now, all_of_it: bool) -> None:
+    def _show(self, now: Now, frame: int) -> None:
+        rest = frame % REST_EVERY == 0
         if self._server.pages:
             self._show_scene(now)
-            if all_of_it:
+            if rest:
                 self._show_plots()
-        if all_of_it:
+            # Between two looks of plots and texts, so that no frame does all.
+            if frame % SIGHT_EVERY == 1 and self._stage is not None:
+                put(self._sight, self._stage.sight(now.tick[0], 1.0 / self._pilot.pace.rate_hz))
+        if rest:
             self._show_texts(now)
 
     def close(self) -> None:
@@ -118,11 +129,10 @@ class Console:
         self._number += 1
         self._flight, plan, scenario = flight, flight.flight.plan, flight.flight.scenario
         scene = flight.flight.simulator.scene
-        camera = scenario.camera if scene.bond == "free" else None
         name, envelope = f"/flight_{self._number}", float(plan.thresholds.get("align_offset_m", 0.0))
-        self._stage = Stage(self._server.viser.scene, scene, name, plan.weight_n, camera, envelope)
+        self._stage = Stage(self._server.viser.scene, scene, name, plan.weight_n, scenario, envelope)
         self._rows.clear()
-        self._phases, self._fault = [], 0
+        self._phases, self._begun, self._fault = [], [], 0
         self._thrown.clear()
         self._outcomes.clear()
         self._way: Array | None = way_of(plan)
@@ -141,6 +151,9 @@ class Console:
             phase, fault = int(mission["phase"][0]), int(mission["fault"][0])
             if self._phases[-1:] != [phase]:
                 self._phases.append(phase)
+                self._begun.append(
+                    int(mission["tick"][0]) - round(float(mission["elapsed"][0]) * self._pilot.pace.rate_hz)
+                )
             if fault != self._fault:
                 self._fault = fault
                 self._note_outcome(now)
@@ -149,6 +162,9 @@ class Console:
         assert self._stage is not None
         wind = now.air if np.isfinite(now.air).all() else None
         self._stage.show(now.tick[0], wind)
+        assert self._flight is not None
+        share = next((m.value for m in reversed(self._flight.done) if m.do == "sea"), 1.0)
+        self._stage.wave(float(now.tick["measurement"]["tick"][0]) / self._pilot.pace.rate_hz, share)
         if self._way is not None:
             self._stage.draw_path(now.tick["truth"][0], self._way)
             # It stands still but on a deck that moves.
@@ -163,26 +179,26 @@ class Console:
 
     def _show_texts(self, now: Now | None) -> None:
         recent = [words for at, words in self._said if time.monotonic() - at < ERROR_S]
-        _put(self._errors, lines_html(recent, warning=True))
+        put(self._errors, lines_html(recent, warning=True))
         if self._flight is None or now is None:
             ended = self._pilot.ended
             words = "preparing the flight" if self._pilot.preparing else "press start, or Enter"
-            _put(self._status, lines_html([words, *([f"✗ {ended.words}"] if ended is not None else [])]))
+            put(self._status, lines_html([words, *([f"✗ {ended.words}"] if ended is not None else [])]))
             return
         plan, tick = self._flight.flight.plan, now.tick[0]
-        _put(self._status, self._status_html(now))
-        _put(self._strip, strip_html(plan.names, self._phases[-16:], int(tick["mission"]["phase"])))
+        put(self._status, self._status_html(now))
+        put(self._strip, strip_html(plan.names, self._phases[-16:], int(tick["mission"]["phase"])))
         rotors, arm, cradle = (float(f[0]) for f in upward_forces_n({"truth": now.tick["truth"]}))
         bars = bars_of(tick, self._brief.limits, 1e-3 * plan.scenario.limits.uav_age_ms)
         flags = flags_of(tick)
-        _put(
+        put(
             self._gauges,
             waits_html(plan, now, plan.thresholds)
             + shares_html(rotors, arm, cradle)
             + bars_html(bars)
             + lines_html([f"limits at work: {', '.join(flags)}"] if flags else []),
         )
-        _put(self.controls.outcomes, lines_html(list(self._outcomes)))
+        put(self.controls.outcomes, lines_html(list(self._outcomes)))
         self._forecast()
         self._show_command()
 
@@ -206,12 +222,9 @@ class Console:
         if pilot.choices is None:
             return
         steered = self._flight is not None and bool(self._flight.done)
-        operator = pilot.log if steered else None
-        text = pilot.choices.command(operator, self._settings)
-        if steered and operator is None:
-            text += "  (the operator's messages: when the log is whole)"
-        if self.controls.again.value != text:
-            self.controls.again.value = text
+        command = pilot.choices.command(pilot.log if steered else None, self._settings)
+        waits = "with the operator's messages when the log is whole" if steered and pilot.log is None else ""
+        put(self._again, command_html(command, waits))
 
     def _forecast(self) -> None:
         if self._flight is None:
@@ -220,8 +233,8 @@ class Console:
         where = self._present(plan) if phase == AT_ONCE else phase
         if self._shown != (fault, where):
             self._shown = fault, where
-            _put(self.controls.forecast, lines_html([forecast(plan, fault, where)]))
-            _put(self.controls.table, table_html(plan, (fault, where)))
+            put(self.controls.forecast, lines_html([forecast(plan, fault, where)]))
+            put(self.controls.table, table_html(plan, (fault, where)))
 
     def _present(self, plan: Plan) -> str:
         now = None if self._flight is None else self._flight.now
@@ -243,13 +256,11 @@ class Console:
             self._outcomes.append(f"aborted by hand in {before}, went to {end}")
         elif self._thrown:
             thrown = self._thrown[-1]
-            done = [m for m in self._flight.done if m.do == "fault"]
-            since = (
-                (int(mission["tick"]) - round(mission["elapsed"] * self._pilot.pace.rate_hz) - done[-1].tick)
-                if done
-                else 0
-            )
-            self._outcomes.append(outcome(thrown, found, before, end, since / self._pilot.pace.rate_hz))
+            told = [m.tick for m in self._flight.done if m.do == "fault"][-1:]
+            # It fails when the phase begins for which it was thrown in, if that is later.
+            told += self._begun[-2:-1] if thrown.phase == before else []
+            since = (self._begun[-1] - max(told, default=self._begun[-1])) / self._pilot.pace.rate_hz
+            self._outcomes.append(outcome(thrown, found, before, end, since))
         else:
             self._outcomes.append(f"the supervisor found {found} in {before}, went to {end}")
 
@@ -263,9 +274,3 @@ def way_of(plan: Plan) -> Array | None:
         for at in plan.mission.points(plan.scenario)
     ]
     return np.array(points) if len(points) > 1 else None
-
-
-def _put(html: object, content: str) -> None:
-    # What has not changed is not sent again.
-    if getattr(html, "content", None) != content:
-        html.content = content  # type: ignore[attr-defined]

@@ -148,8 +148,6 @@ class Controls:
             "seed": gui.add_number("seed", first.seed, min=0, max=2**31, step=1),
         }
         gui.add_html(lines_html(["What is chosen here acts from the next flight on."]))
-        self.again: Any = gui.add_text("do it again", first.command(), multiline=True)
-        """Where the page shows the command that does it again."""
 
     def _build_sliders(self) -> None:
         self._slider: dict[str, Any] = {}

@@ -10,12 +10,20 @@ from armland.rotations import Array
 
 BLUE = (0, 114, 178)
 
+NARROW = """<style>@media (max-width: 36em) {
+  .mantine-Paper-root[style*="20em"] { width: 100% !important; max-height: 55% !important; }
+  .mantine-Paper-root[style*="20em"] div[style="width: 20em;"] { width: 100% !important; }
+  div[style*="flex-grow: 1"][style*="height: 100%"]:has(canvas) { height: 45% !important; }
+}</style>"""
+"""In a narrow window viser's panel is a sheet over the scene's lower right: it goes below the scene, as wide as the window."""
+
 
 def look(server: viser.ViserServer) -> None:
     """Set theme, light and background, and the switch between light and dark."""
     _theme(server, dark=False)
     server.gui.main_panel.dock_right()
     server.gui.main_panel.set_width(430)
+    server.gui.add_html(NARROW)
     switch = server.gui.add_checkbox("dark", initial_value=False)
     switch.on_update(in_order(lambda event: _theme(server, dark=event.target.value)))
     server.gui.add_command("light or dark", hotkey="L").on_trigger(in_order(lambda _: _toggle(switch)))
@@ -39,6 +47,12 @@ def _toggle(switch: Any) -> None:
 
 def _theme(server: viser.ViserServer, dark: bool) -> None:
     server.gui.configure_theme(dark_mode=dark, show_logo=False, show_share_button=False, brand_color=BLUE)
+
+
+def put(html: Any, content: str) -> None:
+    """Let a piece of HTML say `content`; what has not changed is not sent again."""
+    if getattr(html, "content", None) != content:
+        html.content = content
 
 
 def put_camera(server: viser.ViserServer, target: Array) -> None:

@@ -10,19 +10,21 @@
 The cradle's buffers are not logged: its rails are drawn where they rest without load, which is 2 mm higher at most.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from armland.errors import ArmlandError, LogError
+from armland.models.arm_file.spec import PREFIX
 from armland.models.description import EE_SITE
 from armland.plant.scene.composition import Scene, build_scene
 from armland.plant.scene.uav import UAV
 from armland.records import Records
 from armland.rotations import Array, matrix
 from armland.scenario import Scenario
+from armland.scenario.arm import Arm
 
 
 def scene_of(metadata: Mapping[str, str]) -> Scene:
@@ -31,8 +33,17 @@ def scene_of(metadata: Mapping[str, str]) -> Scene:
     Raises:
         LogError: the log has no scenario, or none that this version knows; or a file of it is no longer there.
     """
+    return _scene_of(metadata, lambda scenario: scenario)
+
+
+def armless_scene_of(metadata: Mapping[str, str]) -> Scene:
+    """The same with an arm that comes with armland in place of the log's, which is not to be drawn, see `Poses`; errors likewise."""
+    return _scene_of(metadata, lambda scenario: scenario.model_copy(update={"arm": Arm()}))
+
+
+def _scene_of(metadata: Mapping[str, str], changed: Callable[[Scenario], Scenario]) -> Scene:
     try:
-        scenario = Scenario.model_validate_json(metadata["scenario"])
+        scenario = changed(Scenario.model_validate_json(metadata["scenario"]))
         return build_scene(scenario, "hinged" if metadata["start"] == "hinged" else "free")
     except KeyError as e:
         raise LogError(
@@ -50,13 +61,22 @@ class Poses:
 
     Args:
         scene: of `scene_of`, or of the simulator that flies; its model is read only.
+        armless: whether the scene's arm is none that flew: the tool stands where the truth has the end effector, whatever the arm.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, armless: bool = False) -> None:
         self.scene, self.model = scene, scene.model
         self._data = mujoco.MjData(scene.model)
         self._pivot = scene.model.site(f"{UAV}pivot").pos.copy()
-        self._hung = Rotation.identity()
+        model = scene.model
+        self.absent = frozenset(b for b in range(model.nbody) if armless and model.body(b).name.startswith(PREFIX))
+        """Bodies that are not to be drawn."""
+        # All that the end effector carries; a parent has a lower number than its children.
+        carried = {model.body("armland_sensor").id} if armless else set()
+        for body in range(model.nbody):
+            if int(model.body_parentid[body]) in carried:
+                carried.add(body)
+        self._carried = sorted(carried)
 
     def set(self, truth: Records) -> None:
         """Take over the truth of one tick, a record of `records.layout("truth", n)`.
@@ -65,9 +85,10 @@ class Poses:
             LogError: it has not as many joints as the scene's arm.
         """
         s, q = self.scene, self._data.qpos
-        if len(truth["q"]) != s.joints:
+        if not self._carried and len(truth["q"]) != s.joints:
             raise LogError(f"the log has {len(truth['q'])} joints, the arm of its scenario {s.joints}")
-        q[s.joint_qpos] = truth["q"]
+        if not self._carried:
+            q[s.joint_qpos] = truth["q"]
         if s.deck_qpos >= 0:
             yaw_pitch_roll = rotation(truth["deck_quat"]).as_euler("ZYX")
             q[s.deck_qpos : s.deck_qpos + 6] = [*truth["deck"], *yaw_pitch_roll]
@@ -82,7 +103,21 @@ class Poses:
             # From the arm to the UAV by Rz, Rx, Ry.
             q[s.hinge_qpos] = (rotation(truth["ee_quat"]).inv() * body).as_euler("ZXY")
         mujoco.mj_kinematics(self.model, self._data)
+        if self._carried:
+            self._carry(np.array(truth["ee"]), rotation(truth["ee_quat"]))
         mujoco.mj_camlight(self.model, self._data)
+
+    def _carry(self, place: Array, turn: Rotation) -> None:
+        # To where the truth has the end effector: (3,), m, W, and its attitude.
+        d, ee = self._data, self.model.site(EE_SITE).id
+        by = turn * Rotation.from_matrix(d.site_xmat[ee].reshape(3, 3)).inv()
+        at = d.site_xpos[ee].copy()
+        for b in self._carried:
+            d.xpos[b] = place + by.apply(d.xpos[b] - at)
+            d.xquat[b] = (by * rotation(d.xquat[b])).as_quat(scalar_first=True)
+            d.xmat[b] = matrix(d.xquat[b]).ravel()
+            d.xipos[b] = place + by.apply(d.xipos[b] - at)
+        d.site_xpos[ee] = place
 
     @property
     def bodies(self) -> tuple[Array, Array]:

@@ -36,13 +36,13 @@ def meshes_of(model: mujoco.MjModel) -> list[Mesh]:
     Links of an arm whose file draws none are drawn by the shapes that touch in their place.
     """
     parts: dict[tuple[int, tuple[float, ...]], list[tuple[Array, np.ndarray]]] = defaultdict(list)
-    for geom in _shown(model):
+    for geom in drawn(model):
         made = triangles(model, geom)
         if made is None:
             continue
         vertices, faces = made
         placed = vertices @ matrix(model.geom_quat[geom]).T + model.geom_pos[geom]
-        parts[int(model.geom_bodyid[geom]), _color(model, geom)].append((placed, faces))
+        parts[int(model.geom_bodyid[geom]), color_of(model, geom)].append((placed, faces))
     return [_joined(body, color, pieces) for (body, color), pieces in sorted(parts.items())]
 
 
@@ -72,7 +72,8 @@ def triangles(model: mujoco.MjModel, geom: int) -> tuple[Array, np.ndarray] | No
     return np.asarray(made.vertices, dtype=float), np.asarray(made.faces)
 
 
-def _shown(model: mujoco.MjModel) -> list[int]:
+def drawn(model: mujoco.MjModel) -> list[int]:
+    """The numbers of the shapes that are drawn, see `meshes_of`."""
     shown = [g for g in range(model.ngeom) if model.geom_group[g] in DRAWN and model.geom_rgba[g][3] > 0.0]
     seen = {int(model.geom_bodyid[g]) for g in shown}
     instead = [
@@ -85,7 +86,8 @@ def _shown(model: mujoco.MjModel) -> list[int]:
     return [g for g in [*shown, *instead] if model.geom(g).name != "floor"]
 
 
-def _color(model: mujoco.MjModel, geom: int) -> tuple[float, ...]:
+def color_of(model: mujoco.MjModel, geom: int) -> tuple[float, ...]:
+    """Red, green, blue and opacity of a shape, 0 to 1."""
     if model.geom_group[geom] == 3:
         return PLAIN
     material = int(model.geom_matid[geom])

@@ -8,7 +8,7 @@
 | pyramid at the tool | what the camera may see; green where the plate's pose is known, else vermilion |
 | disc on the magnet | the capture envelope: how far aside the plate may be |
 | line | where the end effector is to go; what it did stays as a pale trail |
-| floor, sea | the deck that arm and cradle stand on; still water where it moves |
+| floor, sea | the deck that arm and cradle stand on; water that moves as the waves which move the deck |
 """
 
 from typing import Any
@@ -19,11 +19,14 @@ from viser import SceneApi
 
 from armland.console.stage.poses import Poses, forces_from, to_world
 from armland.console.stage.shapes import Mesh, meshes_of
+from armland.console.stage.sight import Sight
+from armland.console.stage.water import Water
 from armland.plant.scene.composition import Scene
 from armland.plant.scene.deck import DECK
 from armland.plant.scene.eye import CAMERA
 from armland.records import Records
 from armland.rotations import Array
+from armland.scenario import Scenario
 from armland.scenario.sensing import Camera
 
 WEIGHT_M, WIND_M = 0.25, 0.08
@@ -34,9 +37,6 @@ SHORTEST_M = 0.04
 
 STILL = 1e-5
 """Change of a place, m, and of a quaternion's numbers, 1, that nobody sees."""
-
-SEA_M = -1.0
-"""Height of the still water below the deck, m."""
 
 SEEN, LOST = (0, 158, 115), (213, 94, 0)
 FORCE, WIND, PATH = (213, 94, 0), (86, 180, 233), (0, 114, 178)
@@ -54,9 +54,10 @@ class Stage:
         scene: whose shapes are drawn.
         name: of the node below which it stands; a second flight has another.
         weight: of all that flies, N, the unit of the force's arrow.
-        camera: of the scenario; no pyramid is drawn where there is none.
+        scenario: that is flown; without it there is no camera, and the water is flat.
         envelope: radius of the disc on the magnet, m; 0: none.
         ghost: whether it is a second flight, drawn pale in one colour.
+        armless: whether the scene's arm is none that flew, see `Poses`.
     """
 
     def __init__(
@@ -65,23 +66,28 @@ class Stage:
         scene: Scene,
         name: str,
         weight: float,
-        camera: Camera | None = None,
+        scenario: Scenario | None = None,
         envelope: float = 0.0,
         ghost: bool = False,
+        armless: bool = False,
     ) -> None:
-        self.poses, self._api, self._name, self._ghost = Poses(scene), api, name, ghost
+        self.poses, self._api, self._name, self._ghost = Poses(scene, armless), api, name, ghost
         self._weight = weight if np.isfinite(weight) and weight > 0.0 else 10.0
         self._root = api.add_frame(name, show_axes=False)
         self._frames: dict[int, Any] = {}
         self._last: dict[int, tuple[Array, Array]] = {}
         for number, mesh in enumerate(meshes_of(scene.model)):
-            self._hang(number, mesh)
+            if mesh.body not in self.poses.absent:
+                self._hang(number, mesh)
+        self._water: Water | None = None
         if not ghost:
-            self._lay_floor(scene)
+            self._lay_floor(scene, scenario)
+        camera = None if scenario is None or ghost or scene.bond != "free" else scenario.camera
+        self._sight = None if camera is None else Sight(self.poses, camera)
         self._force = self._arrow("force", FORCE)
         self._wind = self._arrow("wind", WIND)
         self._path = self._line("path", GHOST if ghost else PATH, 3.0)
-        self._eye = None if ghost or camera is None else self._add_eye(camera)
+        self._eye = None if camera is None else self._add_eye(camera)
         self._disc = self._add_disc(envelope) if envelope > 0.0 and scene.bond == "free" and not ghost else None
 
     def show(self, tick: Records, wind: Array | None = None) -> None:
@@ -109,6 +115,15 @@ class Stage:
                 self._eye.color = color
         if self._disc is not None:
             self._disc.position, self._disc.wxyz = self.poses.end_effector, np.array(truth["ee_quat"])
+
+    def wave(self, time: float, share: float = 1.0) -> None:
+        """Let the water be as at a time, s, with a `share` of its height."""
+        if self._water is not None:
+            self._water.show(time, share)
+
+    def sight(self, tick: Records, period_s: float) -> str:
+        """What the camera sees, see `Sight.svg`, at the tick that was shown last; empty where there is no camera."""
+        return "" if self._sight is None else self._sight.svg(tick, period_s)
 
     def draw_path(self, truth: Records, points: Array) -> None:
         """Draw the way through points (k, 3), m, D, as the deck of one tick's truth has them."""
@@ -145,23 +160,14 @@ class Stage:
         self._last[body] = place.copy(), turn.copy()
         frame.position, frame.wxyz = place, turn
 
-    def _lay_floor(self, scene: Scene) -> None:
+    def _lay_floor(self, scene: Scene, scenario: Scenario | None) -> None:
         under = self._name
         if scene.deck_qpos >= 0:
             deck = scene.model.body(DECK).id
             under = f"{self._name}/body_{deck}"
             if deck not in self._frames:
                 self._frames[deck] = self._api.add_frame(under, show_axes=False)
-            water = trimesh.creation.box(extents=[60.0, 60.0, 0.02])
-            self._api.add_mesh_simple(
-                f"{self._name}/sea",
-                np.asarray(water.vertices, dtype=np.float32),
-                np.asarray(water.faces, dtype=np.uint32),
-                color=(60, 120, 160),
-                opacity=0.55,
-                position=(0.0, 0.0, SEA_M),
-                receive_shadow=False,
-            )
+            self._water = Water(self._api, self._name, scenario)
         size = 3.0 if scene.deck_qpos >= 0 else 8.0
         self._api.add_grid(
             f"{under}/floor",
@@ -172,7 +178,7 @@ class Stage:
             cell_color=(165, 170, 176),
             section_color=(125, 130, 138),
             plane_color=(150, 156, 164),
-            plane_opacity=0.35 if scene.deck_qpos >= 0 else 0.0,
+            plane_opacity=0.9 if scene.deck_qpos >= 0 else 0.0,
         )
 
     def _add_eye(self, camera: Camera) -> Any:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from armland.view.figures.canvas import PAGE_IN, sheet
 
@@ -31,9 +32,14 @@ def comparison_figure(rows: Sequence[Mapping[str, Any]]) -> Figure:
         }
         left.plot([r["metrics"]["attitude_max_deg"] for r in own], y, label=law, **style)
         right.plot([1e3 * max(r["metrics"]["position_rms_m"]) for r in own], y, **style)
-    left.set(xscale="log", xlabel="largest attitude deviation (°)", ylim=(len(conditions) - 0.5, -0.5))
+    left.set(xscale="log", xlabel="largest attitude\ndeviation (°)", ylim=(len(conditions) - 0.5, -0.5))
     left.set_yticks(range(len(conditions)), conditions)
-    right.set(xscale="log", xlabel="position error, RMS of the worst axis (mm)")
+    right.set(xscale="log", xlabel="position error, RMS\nof the worst axis (mm)")
+    for axes in (left, right):
+        # Over less than a decade the powers of ten alone would be one number or none.
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
     handles, labels = left.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 6), handlelength=1.0)
     return figure

@@ -111,7 +111,7 @@ def _draw_interception(axes: Axes, found: EnvelopeStudy) -> None:
     axes.set(xscale="log", yscale="log", ylim=(0.5, 1e7))
     axes.set_xticks([0.3, 0.5, 1.0, 2.0], ["0.3", "0.5", "1", "2"])
     axes.set_xticks([], minor=True)
-    axes.legend(loc="upper right", fontsize=6.5, ncols=2)
+    axes.legend(loc="upper right", fontsize=6.0, ncols=2, handlelength=1.0, columnspacing=0.8, borderaxespad=0.2)
     axes.set(xlabel="frequency of the plate (Hz)", ylabel="amplitude (mm)")
 
 

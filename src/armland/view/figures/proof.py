@@ -12,6 +12,7 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -133,7 +134,7 @@ def decay_figure(proof: Proof) -> Figure:
             color = RED if negative else BLUE
             axes.semilogy(rows["t"], rows["v2"] / rows["v2"][0], color=color, linewidth=0.35, alpha=0.7, label=label)
         axes.axhline(SETTLED, color="black", linewidth=0.6, linestyle=(0, (4, 3)))
-        axes.set_title(f"{case.kind.title}\n{len(case.paths)} states", fontsize=8.0)
+        axes.set_title(f"{fill(case.kind.title, 24)}\n{len(case.paths)} states", fontsize=8.0)
         axes.set_xlabel("time $t$ (s)")
     panels[0].set(
         ylabel=r"$V_2(t) / V_2(0)$",
@@ -179,6 +180,8 @@ def jump_figure(proof: Proof) -> Figure:
             middle.plot(np.degrees(close.angle), close.v2, **style)
     left.set_ylabel(r"torque of (29), $\Delta\tau + \tau_{att}$ (N·m)")
     middle.set_ylabel("$V_2$ (N·m)")
+    low, high = left.get_ylim()
+    left.set_ylim(low, high + 0.6 * (high - low))
     left.legend(title="turning about x", loc="upper left")
     for axes in (left, middle):
         axes.axvline(180.0, color="black", linewidth=0.6, linestyle=(0, (4, 3)))

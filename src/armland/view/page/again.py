@@ -2,13 +2,14 @@
 
 import json
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from armland.control.laws.settings import row_of
 from armland.errors import ArmlandError
 from armland.runtime.recorder import SCENARIO_NAME
+from armland.scenario import Scenario
 from armland.scenario.files.loading import SCENARIOS
 from armland.scenario.tables import leaves, take
 
@@ -56,6 +57,24 @@ def study_again(metadata: Mapping[str, str], attached: bytes | None, default: st
     """
     named = [word for name in (_file(attached),) if name != default for word in ("--scenario", name)]
     return _again(["paper", *more, *named, *_shared(metadata)], attached)
+
+
+def command_again(words: Sequence[str], scenario: Scenario, default: str, flag: str = "", seeded: bool = True) -> Again:
+    """The command that does a study of a scenario again.
+
+    Args:
+        words: command and options that the scenario does not say.
+        scenario: that was studied.
+        default: the scenario where none is named.
+        flag: option that names it; an argument where there is none.
+        seeded: whether the command takes `--seed`.
+    """
+    attached, overrides = scenario.text.encode() or None, json.loads(scenario.overrides or "{}")
+    own = overrides.get("run", {}).get("seed")
+    named = [word for name in (_file(attached),) if name != default for word in (flag, name) if word]
+    seed = ["--seed", str(scenario.run.seed)] if seeded else []
+    seed += ["--set", f"run.seed={own}"] if own is not None and not seeded else []
+    return _again([*words, *named, *seed, *_settings(overrides)], attached)
 
 
 def _shared(metadata: Mapping[str, str]) -> list[str]:

@@ -6,6 +6,7 @@ from typing import Any
 
 from armland.errors import ArmlandError, PictureError
 from armland.experiments.judge.judgement import PhaseTime, phase_times
+from armland.experiments.operator.script import SCRIPT_NAME
 from armland.runtime.log import Log
 from armland.runtime.recorder import SCENARIO_NAME
 from armland.scenario import Scenario
@@ -22,6 +23,9 @@ from armland.view.page.pictures import drawing, photograph
 from armland.view.page.sheet import Piece, Section, Sheet, Still, Verdict, settings_grid
 
 STILL_PX = (440, 352)
+
+STEERED = ("--operator", "LOG.mcap")
+"""What a run that was steered by hand needs to be done again: its log, which holds the operator's messages."""
 
 OVERVIEW = (
     "From top to bottom: height of the UAV's pivot and of the arm's end effector; their horizontal distance, logarithmic; force in "
@@ -64,7 +68,7 @@ def flight_sheet(log: Log, result: Mapping[str, Any], pictures: bool = True) -> 
         verdict,
         tiles(result, run),
         sections,
-        again(log.metadata, log.attachments.get(SCENARIO_NAME)),
+        again(log.metadata, log.attachments.get(SCENARIO_NAME), STEERED if SCRIPT_NAME in log.attachments else ()),
     )
 
 

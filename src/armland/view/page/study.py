@@ -117,7 +117,7 @@ def paper_sheet(logs: Sequence[Log], result: Mapping[str, Any]) -> Sheet:
     return Sheet(
         f"The paper's experiments, seed {first.metadata['seed']}",
         scenario.title,
-        _claims_verdict(result["verdicts"]),
+        claims_verdict(result["verdicts"]),
         [],
         [
             Section("Claims", grids=[_claims("What the paper reports", result["verdicts"])]),
@@ -154,14 +154,7 @@ TITLES = {
 def comparison_sheet(result: Mapping[str, Any], scenario: Scenario, law: str | None) -> Sheet:
     """What the page of a comparison of laws says, of its result and the scenario that was flown."""
     attached = scenario.text.encode() or None
-    metadata = {
-        "mission": "comparison of laws",
-        "law": law or "all of the scenario",
-        "seed": str(scenario.run.seed),
-        "scenario": scenario.model_dump_json(),
-        "overrides": scenario.overrides,
-        "version": __version__,
-    }
+    metadata = told_of(scenario, "comparison of laws", law or "all of the scenario")
     words = (
         "For each law and condition: the largest attitude deviation, and the largest RMS position error of an axis. Both scales are "
         "logarithmic; the further left, the better."
@@ -174,14 +167,27 @@ def comparison_sheet(result: Mapping[str, Any], scenario: Scenario, law: str | N
     return Sheet(
         f"Laws compared, seed {scenario.run.seed}",
         scenario.title,
-        _claims_verdict(result["verdicts"]),
+        claims_verdict(result["verdicts"]),
         [],
         [*sections, configuration(scenario, metadata, attached), versions(metadata)],
         study_again(metadata, attached, "compare", more),
     )
 
 
-def _claims_verdict(verdicts: Sequence[Mapping[str, Any]]) -> Verdict:
+def told_of(scenario: Scenario, what: str, law: str) -> dict[str, str]:
+    """What a log would say of a scenario from which something was computed that has no log of its own."""
+    return {
+        "mission": what,
+        "law": law,
+        "seed": str(scenario.run.seed),
+        "scenario": scenario.model_dump_json(),
+        "overrides": scenario.overrides,
+        "version": __version__,
+    }
+
+
+def claims_verdict(verdicts: Sequence[Mapping[str, Any]]) -> Verdict:
+    """How many claims hold, and which do not."""
     judged = [v for v in verdicts if v["holds"] is not None]
     kept = sum(bool(v["holds"]) for v in judged)
     missed = "; ".join(v["claim"] for v in judged if not v["holds"])

@@ -18,33 +18,63 @@ NARROWEST = 10
 
 def print_margins(found: Margins, out: Path) -> None:
     """Print verdict, margins with the worst first, the worst single deviations and pairs, and where the rest is."""
-    console, terms = terminal(), found.terms
-    inside = [m.row.path for m in found.margins if not m.holds]
-    if not inside:
+    console = terminal()
+    if found.holds:
         console.print("[bold green]holds[/]: each deviation alone may have its published range")
-    for path in inside:
+    for path in inside(found):
         console.print(Text.from_markup("[bold red]fails[/]: ").append(f"{path} alone, inside its published range"))
-    console.print(_margins(found))
+    first, *effects = margin_tables(found)
+    console.print(first)
+    for line in (*first_failures(found), terms_in_words(found)):
+        console.print(line, markup=False)
+    for line in screened(found):
+        console.print(line, markup=False)
+    for table in effects:
+        console.print(table)
+    console.print(f"The data is in {out}/", markup=False)
+
+
+def inside(found: Margins) -> list[str]:
+    """Deviations that fail alone inside their published range."""
+    return [m.row.path for m in found.margins if not m.holds]
+
+
+def first_failures(found: Margins) -> list[str]:
+    """By what the narrowest fail first, a sentence each."""
+    lines = []
     for m in found.margins[:NARROWEST]:
         if m.bracket.failure is not None:
             why, end = m.bracket.failure, end_of(m.row, m.bracket.failure.seed)
             where = f"seed {why.seed}{(end and f', {end} end') or ''}"
-            console.print(f"{m.row.path} fails first by: {why.reason} ({where}; UAV {why.state})", markup=False)
-    console.print(
+            lines.append(f"{m.row.path} fails first by: {why.reason} ({where}; UAV {why.state})")
+    return lines
+
+
+def terms_in_words(found: Margins) -> str:
+    """On what terms the margins were found, and the signs of their table."""
+    terms = found.terms
+    return (
         f"{terms.mission}, around {terms.around}, seeds {found.seeds[0]} to {found.seeds[-1]}; a factor holds while "
-        f"{100.0 * terms.share:g} % of them succeed. ×: factor on the published range; >: nothing failed up to there.",
-        markup=False,
+        f"{100.0 * terms.share:g} % of them succeed. ×: factor on the published range; >: nothing failed up to there."
     )
+
+
+def screened(found: Margins) -> list[str]:
+    """What came of all deviations at once; nothing where that was not flown."""
     s = found.screening
-    if s is not None:
-        console.print(
-            f"All at once, {s.factor:g} × published: {s.landed} of {s.flights} flights succeed. Effects on the largest figure "
-            f"over its bound (2: failed); clear: beyond chance.",
-            markup=False,
-        )
-        console.print(_effects("Worst single deviations", s.singles))
-        console.print(_effects("Worst pairs", s.pairs))
-    console.print(f"The data is in {out}/", markup=False)
+    if s is None:
+        return []
+    return [
+        f"All at once, {s.factor:g} × published: {s.landed} of {s.flights} flights succeed. Effects on the largest figure "
+        f"over its bound (2: failed); clear: beyond chance."
+    ]
+
+
+def margin_tables(found: Margins) -> list[Table]:
+    """The margins, and the worst single deviations and pairs where all were flown at once."""
+    s = found.screening
+    effects = [] if s is None else [_effects("Worst single deviations", s.singles), _effects("Worst pairs", s.pairs)]
+    return [_margins(found), *effects]
 
 
 def range_in_words(low: float, high: float, unit: str = "1") -> str:

@@ -25,14 +25,18 @@ ROWS = (
 def print_proof(result: dict[str, Any], out: Path) -> None:
     """Print tables of the subsystem, of the demonstrator and of the verdicts, and where the rest is."""
     console = terminal()
-    console.print(_subsystem(result["subsystem"]))
-    if result["demonstrator"]:
-        console.print(_demonstrator(result["demonstrator"]))
-    console.print(verdict_table("Verdicts", result["verdicts"]))
+    for table in proof_tables(result):
+        console.print(table)
     words = (
         f"Done in {result['run']['wall_s']:.1f} s. Figures, channels (CSV), logs (MCAP) and result.json are in {out}/"
     )
     console.print(words, markup=False)
+
+
+def proof_tables(result: dict[str, Any]) -> list[Table]:
+    """The subsystem, the demonstrator where there is one, and the verdicts."""
+    books = [_demonstrator(result["demonstrator"])] if result["demonstrator"] else []
+    return [_subsystem(result["subsystem"]), *books, verdict_table("Verdicts", result["verdicts"])]
 
 
 def _subsystem(cases: dict[str, Any]) -> Table:

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+from rich.table import Table
 from rich.text import Text
 
 from armland.experiments.factorial import ARMS, BOARDS, Factorial
@@ -12,7 +13,15 @@ from armland.view.tables.verdicts import cell, terminal, titled
 
 def print_spread(found: Spread, out: Path) -> None:
     """Print what the paper says beside both demonstrators, how often its claims hold, what each calibrated value does alone."""
-    console, demonstrators = terminal(), found.demonstrators
+    console = terminal()
+    for table in spread_tables(found):
+        console.print(table)
+    console.print(f"The data is in {out / 'spread.json'}", markup=False)
+
+
+def spread_tables(found: Spread) -> list[Table]:
+    """The figures and claims of both demonstrators, and each calibrated value at an end of its range."""
+    demonstrators = found.demonstrators
     heads = [head for d in demonstrators for head in (d.name, "median [5 % … 95 %]")]
     table = titled("E1 to E3 over the ranges of what is not published", "", "paper", *heads)
     for figure, said in PAPER.items():
@@ -24,15 +33,13 @@ def print_spread(found: Spread, out: Path) -> None:
     for claim in demonstrators[0].holds:
         shares = [c for d in demonstrators for c in ("", f"{100.0 * d.holds[claim]:.0f} %")]
         table.add_row(Text(f"holds: {claim}"), "", *shares)
-    console.print(table)
-    biases = list(found.sensitivity[0].biased)
-    alone = titled("One calibrated value at an end of its range", "value", "", "E1 [°]", "E2 [°]", RATIO, *biases)
+    biases = list(found.sensitivity[0].biased) if found.sensitivity else []
+    alone = titled("One calibrated value at an end of its range", "value", "at", "E1 [°]", "E2 [°]", RATIO, *biases)
     for s in found.sensitivity:
         figures = (f"{s.figures[name]:.2f}" for name in (E1_LARGEST, E2_LARGEST, RATIO))
         at = "" if s.value is None else f"{s.value:g}"
         alone.add_row(Text(s.knob), at, *figures, *(f"{s.biased[bias]:.2f}" for bias in biases))
-    console.print(alone)
-    console.print(f"The data is in {out / 'spread.json'}", markup=False)
+    return [table, alone]
 
 
 def interval(d: Demonstrator, figure: str) -> str:
@@ -44,6 +51,14 @@ def interval(d: Demonstrator, figure: str) -> str:
 def print_factorial(found: Factorial, out: Path) -> None:
     """Print law by board, for each arm."""
     console = terminal()
+    for table in factorial_tables(found):
+        console.print(table)
+    console.print(f"The data is in {out / 'factorial.json'}", markup=False)
+
+
+def factorial_tables(found: Factorial) -> list[Table]:
+    """Attitude and position error of law by board, for each arm."""
+    tables = []
     for title, of, scale in (
         ("Largest attitude error [°]", lambda m: m.attitude_max_deg, 1.0),
         ("Position error, RMS x/y/z [mm]", lambda m: m.position_rms_m, 1e3),
@@ -56,5 +71,5 @@ def print_factorial(found: Factorial, out: Path) -> None:
                 table.add_row(Text("" if name == law else name), board, *shown)
                 law = name
             table.add_section()
-        console.print(table)
-    console.print(f"The data is in {out / 'factorial.json'}", markup=False)
+        tables.append(table)
+    return tables

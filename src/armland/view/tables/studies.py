@@ -28,14 +28,23 @@ def print_envelope(found: EnvelopeStudy, out: Path) -> None:
         console.print("[bold green]holds[/]: every threshold of the mission lies inside the capture envelope")
     for line in found.outside:
         console.print(Text.from_markup("[bold red]fails[/]: ").append(line))
-    console.print(_thresholds(found))
-    console.print(_bounds(found))
-    console.print(_interception(found))
-    console.print(
+    for table in envelope_tables(found):
+        console.print(table)
+    console.print(corners_in_words(found))
+    console.print(f"The data is in {out}/", markup=False)
+
+
+def envelope_tables(found: EnvelopeStudy) -> list[Table]:
+    """The mission's thresholds, the bounds, and the moving plate."""
+    return [_thresholds(found), _bounds(found), _interception(found)]
+
+
+def corners_in_words(found: EnvelopeStudy) -> str:
+    """How many captures hold at all thresholds at once, and how much was tried."""
+    return (
         f"All thresholds at once: {found.corners_held} of {len(found.corners)} captures hold. "
         f"{found.captures} captures, {len(found.flown)} landings."
     )
-    console.print(f"The data is in {out}/", markup=False)
 
 
 def _cell(value: float, unit: str) -> str:

@@ -17,7 +17,8 @@ def terminal() -> Console:
 
 def titled(title: str, *columns: str, left: Sequence[int] = (0,)) -> Table:
     """A table without rows; columns hold numbers, to the right, where they are not in `left`."""
-    table = Table(title=title, title_justify="left")
+    # As text: a unit in brackets is no markup.
+    table = Table(title=Text(title), title_justify="left")
     for k, column in enumerate(columns):
         table.add_column(Text(column), justify="left" if k in left else "right")
     return table
