@@ -14,6 +14,8 @@ from armland.mission.feasibility.steadiness import (
     SHARE,
     STOPS,
     TICKS,
+    WRONG,
+    drifting,
     moved_mass,
     self_inertia,
     steadied,
@@ -120,6 +122,21 @@ def test_null_space_of_a_heavier_arm_comes_to_rest_as_soon(landing_plan):
     assert qd @ M @ qd == pytest.approx(self_inertia(arm))
 
 
+def test_torque_of_wrong_weights_is_what_lifting_them_along_the_null_space_takes(landing_plan):
+    """Each link's weight times how far its centre of mass rises with the null space's motion, by finite differences."""
+    _, arm = heavy()
+    arm.update(landing_plan.home, np.zeros(arm.joints))
+    free, step = np.linalg.svd(arm.jacobian)[2][6], 1e-5
+    heights = []
+    for q in (landing_plan.home - step * free, landing_plan.home + step * free):
+        arm.update(q, np.zeros(arm.joints))
+        heights.append(arm.data.xipos[:, 2].copy())
+    rise = (heights[1] - heights[0]) / (2.0 * step)
+    arm.update(landing_plan.home, np.zeros(arm.joints))
+    expected = WRONG * np.linalg.norm(9.81 * arm.model.body_mass * rise)
+    assert drifting(arm) == pytest.approx(expected, rel=1e-4)
+
+
 def test_what_the_user_set_stays(landing_plan):
     scenario, arm = heavy(control={"orientation_kd": 7.0, "null_space_damping_nms": 2.0})
     assert steadied(scenario, LANDING, arm, landing_plan.home) is scenario
@@ -137,3 +154,11 @@ def test_heavy_arm_lands_with_what_the_rule_makes_and_not_with_the_lwrs():
     lwrs = octo25("control.orientation_kp=25", "control.orientation_kd=7", "control.null_space_damping_nms=2")
     assert not lwrs["success"]
     assert "near_limit" in lwrs["reason"]
+
+
+@pytest.mark.slow
+def test_elbow_of_an_arm_of_26_kg_stays_out_of_the_cradle_by_its_damping():
+    told = {"arm": str(DATA.parents[1] / "examples" / "seven_axis.urdf"), "deviation": "published"}
+    assert fly(load("landing", told), "landing", 8).result["success"]
+    lwrs = fly(load("landing", told | {"settings": ("control.null_space_damping_nms=2",)}), "landing", 8).result
+    assert "link_5_in_cradle" in lwrs["reason"]

@@ -9,14 +9,17 @@
 | N | orthonormal basis of the Jacobian's null space (n, n − 6) | 1 |
 | d | `control.null_space_damping_nms` | N·m·s/rad |
 | m_n | largest eigenvalue of NᵀMN: the inertia of a motion that leaves the end effector where it is | kg·m² |
+| τ_n | torque in the null space of links whose weights are wrong, each on its own, by `WRONG` | N·m |
 
 A joint that damping alone stops is ω˙(t) = −r ω(t − T): stable where r T < π/2, and at that rate it swings at 1/(4 T), 100 Hz where
 T = 2.5 ms. Where the torque's rate is bounded it does so long before, once it has begun.
 
 What masses wrong by some percent make of torque grows with the arm's weight: a spring that holds the LWR's attitude to a degree left
-18° of a heavy arm's. And where the end effector does not move, joints stop at d/m_n: the same d stops a heavy arm's ten times later.
+18° of a heavy arm's. And where the end effector does not move, joints stop at d/m_n, and wrong weights drive them at τ_n/d:
+the same d stops a heavy arm's ten times later, and lets its elbow rise.
 """
 
+import mujoco
 import numpy as np
 
 from armland.errors import ConfigurationError
@@ -44,6 +47,9 @@ BORNE_KG = 18.0
 STOPS = 10.0
 """Least d/m_n, 1/s: the LWR's is 13."""
 
+WRONG, DRIFTS = 0.1, 0.08
+"""Of each link's weight, and largest τ_n/d that this may make, rad/s of all joints together: the LWR's is 0.055."""
+
 
 def swinging(rate_hz: float) -> float:
     """Rate of damping, 1/s, from which on a joint swings in a loop that is closed `rate_hz` times a second."""
@@ -63,6 +69,16 @@ def self_inertia(arm: ArmModel) -> float:
     return float(np.linalg.eigvalsh(free @ arm.mass_matrix @ free.T)[-1]) if len(free) else 0.0
 
 
+def drifting(arm: ArmModel) -> float:
+    """τ_n, N·m, in the arm's present pose; 0 where no joint moves without the end effector."""
+    free, rise = np.linalg.svd(arm.jacobian)[2][6:], np.zeros((3, arm.joints))
+    down, total = arm.model.opt.gravity, np.zeros(len(free))
+    for body in range(1, arm.model.nbody):
+        mujoco.mj_jacBodyCom(arm.model, arm.data, rise, None, body)
+        total += (free @ (rise.T @ down) * arm.model.body_mass[body]) ** 2
+    return WRONG * float(np.sqrt(total.sum()))
+
+
 def steadied(scenario: Scenario, mission: Mission, arm: ArmModel, home: Array) -> Scenario:
     """The scenario with the attitude's gains and the null space's damping as the arm needs them; itself where they suit it.
 
@@ -78,17 +94,18 @@ def steadied(scenario: Scenario, mission: Mission, arm: ArmModel, home: Array) -
     Raises:
         ConfigurationError: gains that the user set are too large; says which would do.
     """
-    q, c, fastest, inertia = home, scenario.control, 0.0, 0.0
+    q, c, fastest, damping = home, scenario.control, 0.0, 0.0
     for at in mission.points(scenario):
         q = lead(arm, q, point(at, scenario))
         arm.update(q, np.zeros(arm.joints))
-        fastest, inertia = max(fastest, stopping(arm, c.orientation_kd)), max(inertia, self_inertia(arm))
+        fastest = max(fastest, stopping(arm, c.orientation_kd))
+        damping = max(damping, STOPS * self_inertia(arm), drifting(arm) / DRIFTS)
     share = min(_share(scenario, fastest), max(1.0, moved_mass(arm) / BORNE_KG))
     gains = {}
     if share != 1.0 and not any(is_settled(scenario, key) for key in GAINS):
         gains = {"orientation_kp": share * c.orientation_kp, "orientation_kd": share * c.orientation_kd}
-    if STOPS * inertia > c.null_space_damping_nms and not is_settled(scenario, DAMPED):
-        gains["null_space_damping_nms"] = STOPS * inertia
+    if damping > c.null_space_damping_nms and not is_settled(scenario, DAMPED):
+        gains["null_space_damping_nms"] = damping
     return scenario.replaced({"control": gains}) if gains else scenario
 
 
