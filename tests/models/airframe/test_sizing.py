@@ -119,3 +119,12 @@ def test_rules_name_keys_that_there_are():
     for rule in RULES:
         at(scenario, rule.key)
         assert np.all(np.equal(rule.factor(size), 1.0)), rule.key
+
+
+@pytest.mark.parametrize("factor", [0.25, 4.0, 50.0])
+def test_magnet_is_as_large_as_its_rating_and_the_plate_covers_it(factor):
+    scenario, own = sized(other(factor)), load_scenario("landing")
+    grown = scenario.magnet.rating_n / own.magnet.rating_n
+    assert scenario.magnet.pad_radius_m == pytest.approx(own.magnet.pad_radius_m * grown**0.25)
+    beyond = scenario.plate.radius_m - scenario.magnet.pad_radius_m
+    assert beyond == pytest.approx(own.plate.radius_m - own.magnet.pad_radius_m)

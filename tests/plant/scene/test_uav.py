@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from armland.errors import ModelError
+from armland.models.airframe.sizing import sized
 from armland.models.description import ASSETS
 from armland.models.parameters import arm_model
 from armland.plant.scene.composition import build_scene
+from armland.plant.scene.uav import set_stops
 from armland.plant.simulator import level_hinge
+from armland.scenario import load_scenario
 
 G = 9.81
 SIX_AXIS = Path(__file__).parents[2] / "data" / "six_axis.urdf"
@@ -143,3 +146,35 @@ def test_plate_is_of_solid_steel_unless_it_has_a_mass(landing):
     )
     assert steel == pytest.approx(7850.0 * np.pi * 0.022**2 * 0.004)
     assert given == pytest.approx(0.06)
+
+
+def fastest(model, hinge):
+    """Largest rate, rad/s, of a free plate that was thrown at a stop of its hinge with 20 rad/s, within 0.2 s."""
+    data, joint = mujoco.MjData(model), model.joint("uav/hinge_x")
+    mujoco.mj_resetData(model, data)
+    model.opt.gravity[:] = 0.0
+    data.qpos[model.joint("uav/free").qposadr[0] + 2] = 5.0
+    data.qpos[joint.qposadr] = 0.98 * np.radians(hinge.range_deg)
+    data.qvel[joint.dofadr] = 20.0
+    out = 0.0
+    for _ in range(round(0.2 / model.opt.timestep)):
+        mujoco.mj_step(model, data)
+        out = max(out, float(np.abs(data.qvel[joint.dofadr]).max()))
+        if not np.isfinite(out) or out > 1e4:
+            return np.inf
+    return out
+
+
+@pytest.mark.parametrize("name", ["ardrone2", "hexa10", "octo25"])
+def test_stops_of_the_hinge_give_a_free_plate_no_energy(name):
+    scenario = sized(load_scenario("landing", {"airframe": name}))
+    model = build_scene(scenario, "free").model
+    assert fastest(model, scenario.hinge) <= 20.1
+
+
+def test_stops_with_the_ar_drones_ratio_would_tear_a_heavy_uavs_plate_about(monkeypatch):
+    scenario = sized(load_scenario("landing", {"airframe": "octo25"}))
+    model = build_scene(scenario, "free").model
+    monkeypatch.setattr("armland.plant.scene.uav.TRIED_NMS", scenario.hinge.stop_nms)
+    set_stops(model, scenario.hinge)
+    assert fastest(model, scenario.hinge) > 100.0

@@ -1,4 +1,4 @@
-"""How stiffly an arm may hold its attitude: a light wrist swings where its damping acts faster than the loop is closed.
+"""How stiffly an arm holds its attitude, and how much its null space is damped: as its weight and inertia have it.
 
 | symbol | name | unit |
 |---|---|---|
@@ -6,11 +6,20 @@
 | k_d | `control.orientation_kd` | N·m·s/rad |
 | r | largest eigenvalue of k_d M⁻¹ 𝒥_ωᵀ 𝒥_ω: the rate at which the damping stops a joint | 1/s |
 | T | from a joint's motion to the torque that answers it | s |
+| N | orthonormal basis of the Jacobian's null space (n, n − 6) | 1 |
+| d | `control.null_space_damping_nms` | N·m·s/rad |
+| m_n | largest eigenvalue of NᵀMN: the inertia of a motion that leaves the end effector where it is | kg·m² |
+| τ_n | torque in the null space of links whose weights are wrong, each on its own, by `WRONG` | N·m |
 
 A joint that damping alone stops is ω˙(t) = −r ω(t − T): stable where r T < π/2, and at that rate it swings at 1/(4 T), 100 Hz where
 T = 2.5 ms. Where the torque's rate is bounded it does so long before, once it has begun.
+
+What masses wrong by some percent make of torque grows with the arm's weight: a spring that holds the LWR's attitude to a degree left
+18° of a heavy arm's. And where the end effector does not move, joints stop at d/m_n, and wrong weights drive them at τ_n/d:
+the same d stops a heavy arm's ten times later, and lets its elbow rise.
 """
 
+import mujoco
 import numpy as np
 
 from armland.errors import ConfigurationError
@@ -30,6 +39,17 @@ SHARE = 0.5
 
 GAINS = ("control.orientation_kp", "control.orientation_kd")
 
+DAMPED = "control.null_space_damping_nms"
+
+BORNE_KG = 18.0
+"""Weight that an arm's joints move up to which the attitude's gains stay: more than the LWR's 13.6 kg, or 16.3 kg in a wrong belief."""
+
+STOPS = 10.0
+"""Least d/m_n, 1/s: the LWR's is 13."""
+
+WRONG, DRIFTS = 0.1, 0.08
+"""Of each link's weight, and largest τ_n/d that this may make, rad/s of all joints together: the LWR's is 0.055."""
+
 
 def swinging(rate_hz: float) -> float:
     """Rate of damping, 1/s, from which on a joint swings in a loop that is closed `rate_hz` times a second."""
@@ -43,10 +63,27 @@ def stopping(arm: ArmModel, damping: float) -> float:
     return damping * float(np.linalg.eigvalsh(turn @ np.linalg.solve(arm.mass_matrix, turn.T))[-1])
 
 
-def steadied(scenario: Scenario, mission: Mission, arm: ArmModel, home: Array) -> Scenario:
-    """The scenario with an attitude held as softly as the arm's lightest joint needs; as it is where that is no softer.
+def self_inertia(arm: ArmModel) -> float:
+    """m_n, kg·m², in the arm's present pose; 0 where no joint moves without the end effector."""
+    free = np.linalg.svd(arm.jacobian)[2][6:]
+    return float(np.linalg.eigvalsh(free @ arm.mass_matrix @ free.T)[-1]) if len(free) else 0.0
 
-    Stiffness and damping are lessened alike: the attitude comes back as fast as before.
+
+def drifting(arm: ArmModel) -> float:
+    """τ_n, N·m, in the arm's present pose; 0 where no joint moves without the end effector."""
+    free, rise = np.linalg.svd(arm.jacobian)[2][6:], np.zeros((3, arm.joints))
+    down, total = arm.model.opt.gravity, np.zeros(len(free))
+    for body in range(1, arm.model.nbody):
+        mujoco.mj_jacBodyCom(arm.model, arm.data, rise, None, body)
+        total += (free @ (rise.T @ down) * arm.model.body_mass[body]) ** 2
+    return WRONG * float(np.sqrt(total.sum()))
+
+
+def steadied(scenario: Scenario, mission: Mission, arm: ArmModel, home: Array) -> Scenario:
+    """The scenario with the attitude's gains and the null space's damping as the arm needs them; itself where they suit it.
+
+    The attitude is held more stiffly by an arm that is heavier, and as softly as the lightest joint needs. Stiffness and damping
+    change alike: the attitude comes back as fast as before. What the user has set stays.
 
     Args:
         scenario: believed.
@@ -57,23 +94,35 @@ def steadied(scenario: Scenario, mission: Mission, arm: ArmModel, home: Array) -
     Raises:
         ConfigurationError: gains that the user set are too large; says which would do.
     """
-    c, q, fastest = scenario.control, home, 0.0
+    q, c, fastest, damping = home, scenario.control, 0.0, 0.0
     for at in mission.points(scenario):
         q = lead(arm, q, point(at, scenario))
         arm.update(q, np.zeros(arm.joints))
         fastest = max(fastest, stopping(arm, c.orientation_kd))
-    least = swinging(scenario.run.rate_hz)
+        damping = max(damping, STOPS * self_inertia(arm), drifting(arm) / DRIFTS)
+    share = min(_share(scenario, fastest), max(1.0, moved_mass(arm) / BORNE_KG))
+    gains = {}
+    if share != 1.0 and not any(is_settled(scenario, key) for key in GAINS):
+        gains = {"orientation_kp": share * c.orientation_kp, "orientation_kd": share * c.orientation_kd}
+    if damping > c.null_space_damping_nms and not is_settled(scenario, DAMPED):
+        gains["null_space_damping_nms"] = damping
+    return scenario.replaced({"control": gains}) if gains else scenario
+
+
+def moved_mass(arm: ArmModel) -> float:
+    """Mass, kg, that the arm's joints move, its tool included."""
+    return float(arm.model.body_subtreemass[arm.model.jnt_bodyid[0]])
+
+
+def _share(scenario: Scenario, fastest: float) -> float:
+    # By which the attitude's gains may be multiplied; refuses those that the user set and that make a joint swing.
+    c, least = scenario.control, swinging(scenario.run.rate_hz)
     share = SHARE * least / fastest
-    if share >= 1.0:
-        return scenario
-    if any(is_settled(scenario, key) for key in GAINS):
-        if fastest < least:
-            return scenario
+    if fastest >= least and any(is_settled(scenario, key) for key in GAINS):
         raise ConfigurationError(
             f"control.orientation_kd = {c.orientation_kd:g} N·m·s/rad stops the arm's lightest joint at {fastest:.0f} 1/s; from "
             f"{least:.0f} 1/s on it swings, since a torque comes {1e3 * (TICKS / scenario.run.rate_hz + DELAY_S):.1f} ms late; at most "
             f"{share * c.orientation_kd:.2f} leaves a margin, with control.orientation_kp = {share * c.orientation_kp:.1f}, and both "
             "left out follow the arm"
         )
-    gains = {"orientation_kp": share * c.orientation_kp, "orientation_kd": share * c.orientation_kd}
-    return scenario.replaced({"control": gains})
+    return share

@@ -61,7 +61,7 @@ def _lighter(s: Size) -> float:
 
 
 def _pads(s: Size) -> float:
-    return min(s.rating**0.25, 1.0)
+    return s.rating**0.25
 
 
 def _plate(s: Size) -> float:
@@ -154,7 +154,7 @@ RULES = (
         "34 times the AR.Drone's weight is more than it needs: 7 times is left at 10 kg, 5 at 25 kg, for peaks of 1.5 times; a "
         "lighter one's is in proportion, and never too weak for the arm's friction",
     ),
-    Rule("magnet.pad_radius_m", _pads, "a weaker magnet is smaller"),
+    Rule("magnet.pad_radius_m", _pads, "a weaker magnet is smaller, a stronger one larger"),
     Rule("plate.radius_m", _plate, "covers the pads up to an offset of 7 mm"),
     Rule(
         "plate.thickness_m",

@@ -40,8 +40,8 @@ PLAY_HZ, PLAY_DAMPING = 32.0, 0.75
 """Both ends of the play: frequency at which the UAV swings on its hull behind the hinge, and the share of critical damping. Light
 frames bend at 30 to 100 Hz; assumption."""
 
-STOP_R = 2000.0
-"""rad/s² per N·m, see `set_stops`."""
+STOP_R, TRIED_NMS = 2000.0, 0.3
+"""rad/s² per N·m, see `set_stops`; damping of the stops up to which it holds, N·m·s/rad: c R stays below 600 1/s."""
 
 FRAME_RADIUS_M = 0.015
 """Of the beams that carry the rotors, as far as they can touch."""
@@ -113,7 +113,9 @@ def set_stops(model: mujoco.MjModel, hinge: Hinge) -> None:
     far below the latter it leaves the free plate stable, c R < 1/step. So d = A₀/(A₀ + R). Source: MuJoCo's documentation,
     "Solver parameters".
     """
-    stops = {f"{UAV}{name}": (hinge.stop_nm, hinge.stop_nms, STOP_R) for name in ("hinge_x", "hinge_y")}
+    # The stops of a heavier UAV are stiffer in proportion: with the same R its free plate would be torn about by them.
+    ratio = STOP_R / max(hinge.stop_nms / TRIED_NMS, 1.0)
+    stops = {f"{UAV}{name}": (hinge.stop_nm, hinge.stop_nms, ratio) for name in ("hinge_x", "hinge_y")}
     stops |= {PLAY: play_stop(float(model.body_mass[model.body(f"{UAV}uav").id]))}
     for name, (k, c, ratio) in stops.items():
         joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
