@@ -143,7 +143,7 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     s.alone = s.alone + 1 if c.uav_mode == MODE_AUTONOMOUS else 0
     s.sought = s.sought if s.alone > 0 else 0
     # What is kept on the deck must turn with it; where the thrust of one that flies points to is decided in W.
-    _send(_to_own(align, what not in (STATION, CRUISE), p, b.environment, s.ride), s, c)
+    send(to_own(align, what not in (STATION, CRUISE), p, b.environment, s.ride), s, c)
 
 
 @njit(cache=True)
@@ -154,9 +154,10 @@ def _unseen(e: Record, known: Record, p: Record) -> bool:
 
 
 @njit(cache=True)
-def _to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Record) -> Array:
-    # From the deck, as it will be for one that `stands` on it, into the UAV's own idea of the inertial frame, in which it holds its
-    # attitude.
+def to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Record) -> Array:
+    """Rotation (4,), scalar first, from the deck, as it will be for one that `stands` on it, into the UAV's own idea of the inertial
+    frame, in which it holds its attitude; `align` (4,) is δ, `p`, `environment` and `ride` are those of the board.
+    """
     if environment.moves:
         level = deck_ahead(p.lags[0], environment, ride) if stands else environment.base_quat.copy()
         return multiply(level, conjugate(align))
@@ -164,8 +165,10 @@ def _to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Re
 
 
 @njit(cache=True)
-def _send(own: Array, s: Record, c: Record) -> None:
-    # Thrust, set-point and step as they travel: in the UAV's own idea of the world, to which `own` (4,) turns.
+def send(own: Array, s: Record, c: Record) -> None:
+    """Put thrust, set-point and step of `s` into the command `c` as they travel: in the UAV's own idea of the world, to which `own` (4,)
+    turns.
+    """
     quat, step = multiply(own, s.q_d), turned(matrix(own), s.step)
     for i in range(3):
         c.uav_step[i] = step[i] if s.sought else 0.0

@@ -45,6 +45,7 @@ class Simulator:
         start: where the UAV is at first.
         phases: names of the mission's phases, in the order of the numbers in `tick.mission`; faults are armed by them.
         photographer: looks at real pictures in place of the camera's measurement model; then only the Python loop works.
+        scene: another one than that of the scenario's arm.
 
     Raises:
         ConfigurationError: a scenario that cannot be simulated, or faults of the camera that cannot act on pictures.
@@ -58,10 +59,11 @@ class Simulator:
         start: Start,
         phases: tuple[str, ...] = (),
         photographer: Photographer | None = None,
+        scene: Scene | None = None,
     ) -> None:
         self.scenario, self.start = scenario, start
-        self.scene: Scene = build_scene(scenario, "hinged" if start == "hinged" else "free")
-        link(self.scene.joints)
+        self.scene: Scene = scene or build_scene(scenario, "hinged" if start == "hinged" else "free")
+        self._link()
         self.data = mujoco.MjData(self.scene.model)
         self.drawn = draw(scenario, start)
         self.deviations: Values = {}
@@ -77,6 +79,9 @@ class Simulator:
         if self._pictures is not None:
             faults.refuse_detected(scenario)
             see_all(self.world["told"]["camera"])
+
+    def _link(self) -> None:
+        link(self.scene.joints)
 
     def _deviate(self) -> None:
         # A UAV that is hinged on the arm has been calibrated there.

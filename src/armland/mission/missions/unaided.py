@@ -1,0 +1,53 @@
+"""Landing without an arm: the UAV comes down by itself on a flat pad on the deck."""
+
+from armland.mission.missions.keys import GEAR, ON_MAGNET, SHARED
+from armland.mission.table.mission import Criterion, Mission
+from armland.mission.table.phases import Phase
+from armland.scenario import Scenario
+
+USES = (*SHARED, *GEAR, *ON_MAGNET, "pad", "descent")
+"""All that a landing by the arm uses, too: one scenario is flown by every method."""
+
+PHASES = (
+    Phase("find", "hold", "autonomous"),
+    Phase("guide", "hold", "station"),
+    Phase("ready", "hold", "station"),
+    Phase("descend", "hold", "station", on_cradle=True),
+    Phase("settle", "hold", "off", on_cradle=True),
+    Phase("done", "hold", "off", kind="end", on_cradle=True, final=True),
+    Phase("away", "hold", "autonomous", kind="end", final=True),
+)
+"""In the order of `mission.unaided.decide.PHASES`."""
+
+CRITERIA = (
+    Criterion("touchdown_speed", 0.15, "m/s", "speed of the pivot when the pad is touched first"),
+    Criterion("touchdown_tilt", 3.0, "deg", "tilt of the UAV then"),
+    Criterion("placed", 0.3, "m", "distance to the pad's middle at the end"),
+    Criterion("rest", 0.01, "m/s", "speed at the end"),
+)
+"""Those of the landing by an arm, but for the place: rails need 15 mm, on a pad of 1 m the skids are to stand as a whole."""
+
+
+def _phases(_: Scenario) -> tuple[Phase, ...]:
+    return PHASES
+
+
+UNASSISTED = Mission(
+    name="unassisted",
+    summary="land by itself on a flat pad",
+    start="air",
+    phases=_phases,
+    uses=USES,
+    criteria=CRITERIA,
+    timeouts={
+        "find": "the camera does not see the UAV",
+        "guide": "the UAV did not come to its station",
+        "ready": "no moment came to come down",
+        "descend": "the UAV did not come down",
+    },
+    judged_as="unaided",
+    praise="landed",
+    doc="""The same UAV lands on a flat pad on the same deck, by the camera, link and motion reference that the arm's landing has, too; the camera
+looks up through a window in the pad. It goes along with the deck, waits near the pad for a quiet moment, comes down and
+stops its rotors.""",
+)

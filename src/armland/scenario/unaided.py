@@ -1,0 +1,34 @@
+"""A landing without an arm: the pad on which the UAV lands by itself, and how it comes down."""
+
+from typing import Annotated
+
+from armland.scenario import quantities as of
+from armland.scenario.quantities import Section, between, key
+
+
+class Pad(Section):
+    """Flat landing deck, `place.catch_m` above its middle. The camera looks up through a window in it. Sizes are assumptions."""
+
+    height_m: Annotated[float, between(0.1, 10.0)] = key(0.45, "of its surface above the deck's origin")
+    half_m: of.Length = key(0.5, "half its edge: the UAV's skids are 0.38 m wide")
+    friction: Annotated[float, between(0.0, 2.0)] = key(0.8, "of the skids on it, ratio; that of the skids on rails")
+    recess_m: Annotated[float, between(0.0, 2.0)] = key(
+        0.35, "optical centre below the surface: it sees the marker of a UAV that stands"
+    )
+
+
+class Descent(Section):
+    """How a UAV without an arm comes down on the pad."""
+
+    rising = (("ready_m", "wait_m", "it waits for a quiet moment below where it finds its station"),)
+
+    wait_m: of.Length = key(0.5, "height of the skids above the pad at which the station is found")
+    ready_m: of.Length = key(0.2, "height at which it waits for a quiet moment")
+    sink_mps: of.PositiveSpeed = key(0.2, "speed of the descent, against the pad")
+    align_m: of.Length = key(0.1, "horizontal distance to its station within which it goes down")
+    give_up_m: of.Length = key(0.3, "distance at which a descent is given up and begun again")
+    timed: bool = key(True, "whether it waits for a quiet moment; false: it comes down when it is on its station")
+    quiet: of.Factor = key(0.6, "ratio: unrest of pad and UAV, (Q.2), below which it comes down")
+    patience_s: of.PositiveSeconds = key(15.0, "after which it comes down whatever the unrest")
+    cut_m: of.Distance = key(0.01, "height at which the rotors are stopped")
+    level_m: of.Distance = key(0.0, "height from which on it levels out to the pad; 0: not at all")
