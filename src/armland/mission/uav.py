@@ -109,12 +109,12 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     p, s, what = b.told.act.uav, b.kept.act, row.uav
     c.uav_mode = MODES[row.link]
     learn_trim(b)
-    blind = _unseen(e, b.kept.estimate, p) and (what == STATION or (what == CRUISE and not p.fly_on))
+    blind = unseen(e, b.kept.estimate, p) and (what == STATION or (what == CRUISE and not p.fly_on))
     if what == AUTONOMOUS or blind:
         c.uav_mode = MODE_AUTONOMOUS
         s.thrust = s.hover
         _level(p, s)
-        if what == STATION or (row.seeks == 1 and p.sight.leans and _unseen(e, b.kept.estimate, p)):
+        if what == STATION or (row.seeks == 1 and p.sight.leans and unseen(e, b.kept.estimate, p)):
             seek(s.alone * p.tick_s, e, b.kept.estimate.seen == 1, p, s)
     elif what == STATION:
         keep_shortfall(p, s)
@@ -147,8 +147,14 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
 
 
 @njit(cache=True)
-def _unseen(e: Record, known: Record, p: Record) -> bool:
-    # Too long, or reckoned too badly since, to be guided.
+def unseen(e: Record, known: Record, p: Record) -> bool:
+    """Whether a UAV has not been seen for too long, or reckoned too badly since, to be guided.
+
+    Args:
+        e: estimate.
+        known: what the estimate keeps.
+        p: what commanding the UAV is told.
+    """
     sigma = known.plate.sigma_position
     return bool(known.seen == 0 or e.plate_age > p.reckoned or max(sigma[0], sigma[1], sigma[2]) > p.astray)
 
@@ -166,8 +172,8 @@ def to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Rec
 
 @njit(cache=True)
 def send(own: Array, s: Record, c: Record) -> None:
-    """Put thrust, set-point and step of `s` into the command `c` as they travel: in the UAV's own idea of the world, to which `own` (4,)
-    turns.
+    """Put thrust, set-point and step of `s` into the command `c` as they travel: in the UAV's own idea of the world, to which
+    `own` (4,) turns.
     """
     quat, step = multiply(own, s.q_d), turned(matrix(own), s.step)
     for i in range(3):

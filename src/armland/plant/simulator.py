@@ -131,7 +131,7 @@ class Simulator:
         told, kept, views = self.world["told"], self.world["kept"], self.views
         kept[:] = np.zeros_like(kept)
         faults.reset(kept["faults"], told["faults"])
-        _release(told["brake"], kept["brake"], views.dof_frictionloss, views.dof_solimp)
+        brake.switch(told["brake"][0], kept["brake"][0], views.dof_frictionloss, views.dof_solimp)
         link = kept["link"]
         link["up"]["sent"], link["down"]["sent"], link["received"], link["arrived"]["sent"] = -1, -1, -1, -1
         link["arrived"]["quat"] = [1.0, 0.0, 0.0, 0.0]
@@ -297,7 +297,3 @@ def _actuate(k: int, world: Records, views: Views, noise: Noise, phase: int, com
 def _mean(gain: Array) -> float:
     # Added in pairs.
     return float(np.append(gain, np.zeros(len(gain) % 2)).reshape(-1, 2).sum(axis=1).sum()) / len(gain)
-
-
-def _release(told: Records, kept: Records, frictionloss: Array, solimp: Array) -> None:
-    brake.switch(told[0], kept[0], frictionloss, solimp)

@@ -20,7 +20,7 @@ from armland.scenario.refusal import problems, refusal
 from armland.scenario.sensing import Camera, Imperfections, MotionReference, Sensors
 from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.uav import Link, Onboard, Rotors, Uav
-from armland.scenario.unaided import Descent, Pad
+from armland.scenario.unaided.landing import Descent, Pad
 
 HARDWARE = (
     "arm",

@@ -47,7 +47,7 @@ UNASSISTED = Mission(
     },
     judged_as="unaided",
     praise="landed",
-    doc="""The same UAV lands on a flat pad on the same deck, by the camera, link and motion reference that the arm's landing has, too; the camera
-looks up through a window in the pad. It goes along with the deck, waits near the pad for a quiet moment, comes down and
-stops its rotors.""",
+    doc="""The same UAV lands on a flat pad on the same deck, by the camera, link and motion reference that the arm's landing has, too;
+the camera looks up through a window in the pad. It goes along with the deck, waits near the pad for a quiet moment, comes down
+and stops its rotors.""",
 )

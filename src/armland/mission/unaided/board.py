@@ -28,7 +28,7 @@ def descent_told() -> np.dtype:
             ("speed", "f8"),  # m/s, of a UAV that is on its station
             ("give_up", "f8"),  # m
             ("timed", "i8"),
-            ("quiet", "f8"),  # U of (Q.2)
+            ("quiet", "f8"),  # U, ratio, `control.laws.unaided.quiet`
             ("patience", "f8"),  # s
             ("cut", "f8"),  # m
             ("level", "f8"),  # m
@@ -51,7 +51,7 @@ def descent_kept() -> np.dtype:
             ("sinking", "f8"),  # m/s, speed at which that falls
             ("mean_tilt", "f8", (2,)),  # rad, of the deck
             ("known", "i8"),  # 1 once that has been looked at
-            ("unrest", "f8"),  # U of (Q.2)
+            ("unrest", "f8"),  # U, ratio, `control.laws.unaided.quiet`
         ]
     )
 

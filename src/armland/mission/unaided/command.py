@@ -6,7 +6,8 @@ from numba import njit
 from armland.mission.estimate import RING
 from armland.mission.reference.guided import keep, learn_trim, take_over
 from armland.mission.reference.riding import deck_ahead, ride
-from armland.mission.uav import send, to_own
+from armland.mission.reference.view import seek
+from armland.mission.uav import send, to_own, unseen
 from armland.mission.unaided.decide import AWAY, DESCEND, DONE, FIND, SETTLE, height_of
 from armland.records import Record, UavMode
 from armland.rotations import conjugate, from_rotation_vector, matrix, multiply, rotation_error
@@ -31,9 +32,15 @@ def command(b: Record) -> None:
         _level(p.heading, s)
     elif d.phase in (SETTLE, DONE):
         c.uav_mode, s.thrust = OFF, 0.0
+    elif unseen(b.tick.estimate, b.kept.estimate, p) and d.phase != DESCEND:
+        # It hovers by itself, and is told to rise into view.
+        c.uav_mode, s.thrust = AUTONOMOUS, s.hover
+        _level(p.heading, s)
+        seek(s.alone * p.tick_s, b.tick.estimate, b.kept.estimate.seen == 1, p, s)
     else:
         _guide(b)
     s.alone = s.alone + 1 if c.uav_mode == AUTONOMOUS else 0
+    s.sought = s.sought if s.alone > 0 else 0
     send(to_own(b.kept.estimate.filter.align.quat.copy(), False, p, b.environment, s.ride), s, c)
     b.kept.estimate.thrust_log[m.tick % RING] = s.thrust
     out = b.tick.reference

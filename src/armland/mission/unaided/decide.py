@@ -13,7 +13,7 @@
 import numpy as np
 from numba import njit
 
-from armland.control.laws.quiet import unrest
+from armland.control.laws.unaided.quiet import unrest
 from armland.models.environment import apparent_gravity
 from armland.records import Record
 from armland.rotations import matrix
@@ -142,7 +142,9 @@ def _look(b: Record) -> None:
             rate[i] = R[i, 0] * env.base_omega[1] - R[i, 1] * env.base_omega[0]
         for i in range(3):
             carried = env.base_v[i]
-            carried += env.base_omega[(i + 1) % 3] * p.stand[(i + 2) % 3] - env.base_omega[(i + 2) % 3] * p.stand[(i + 1) % 3]
+            carried += (
+                env.base_omega[(i + 1) % 3] * p.stand[(i + 2) % 3] - env.base_omega[(i + 2) % 3] * p.stand[(i + 1) % 3]
+            )
             rise += R[2, i] * carried
             push += R[2, i] * (env.gravity[i] - gamma[i])
         omega = np.sqrt(ride.push2 / max(ride.speed2, 1e-9))

@@ -43,7 +43,12 @@ def perceive(b: Record, stands: bool) -> None:
 @njit(cache=True)
 def _follow(b: Record, stands: bool) -> None:
     m, e, p, s = b.tick.measurement, b.tick.estimate, b.told.estimate, b.kept.estimate
-    gravity, push, eye, view = apparent_gravity(b.environment, e.plate, e.plate_v), np.zeros(3), np.empty(3), STILL.copy()
+    gravity, push, eye, view = (
+        apparent_gravity(b.environment, e.plate, e.plate_v),
+        np.zeros(3),
+        np.empty(3),
+        STILL.copy(),
+    )
     lift = e.thrust * p.weight / max(b.kept.act.hover, 1e-3)
     if stands:
         # What the pad carries goes along with it.
@@ -51,7 +56,8 @@ def _follow(b: Record, stands: bool) -> None:
         for i in range(3):
             push[i] = -gravity[i]
     for i in range(3):
-        eye[i] = e.r[i] = b.told.descent.eye[i]
+        eye[i] = b.told.descent.eye[i]
+        e.r[i] = eye[i] - p.camera[i]
     follow(head(m), lift, push, gravity, eye, view, p.filter, s.filter)
     know(p.filter, s.filter, s.plate)
     for i in range(3):

@@ -13,8 +13,8 @@ from armland.records import Records
 from armland.rotations import Array
 from armland.scenario import Scenario
 
-FIND_S = 20.0
-"""For which a UAV that is not seen is waited for."""
+FIND_S = 40.0
+"""For which a UAV that is not seen is waited for, as by an arm in wind."""
 
 ON_STATION_MPS = 0.25
 """Speed of a UAV that is on its station: that of a touchdown."""
@@ -59,6 +59,12 @@ def _estimate(p: Records, s: Scenario, flyer: Flyer) -> None:
 def _descent(p: Records, s: Scenario, stand: Array, eye: Array) -> None:
     d = s.descent
     p["tick_s"], p["stand"], p["eye"] = 1.0 / s.run.rate_hz, stand, eye
-    p["wait"], p["ready"], p["sink"], p["align"], p["speed"] = d.wait_m, d.ready_m, d.sink_mps, d.align_m, ON_STATION_MPS
+    p["wait"], p["ready"], p["sink"], p["align"], p["speed"] = (
+        d.wait_m,
+        d.ready_m,
+        d.sink_mps,
+        d.align_m,
+        ON_STATION_MPS,
+    )
     p["give_up"], p["timed"], p["quiet"], p["patience"] = d.give_up_m, d.timed, d.quiet, d.patience_s
     p["cut"], p["level"], p["find_s"], p["retries"] = d.cut_m, d.level_m, FIND_S, s.bounds.retries

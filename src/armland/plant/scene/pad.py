@@ -1,5 +1,7 @@
 """The scene of a landing without an arm: a flat pad on the deck, a camera below a window in it, and the same UAV as an arm catches."""
 
+import warnings
+
 import mujoco
 import numpy as np
 
@@ -7,7 +9,7 @@ from armland.mission.unaided.plan import places
 from armland.models.description import EE_SITE, compile_spec
 from armland.plant.scene.composition import Scene
 from armland.plant.scene.contacts import add_contacts, add_pair
-from armland.plant.scene.deck import JOINTS, ground, moves, put_on_deck, settle_solver
+from armland.plant.scene.deck import JOINTS, moves, put_on_deck, settle_solver
 from armland.plant.scene.eye import mount_marker
 from armland.plant.scene.sensors import NET_FORCE, add_frames, sensor_addresses
 from armland.plant.scene.surroundings import add_surroundings
@@ -54,7 +56,10 @@ def build_pad_scene(scenario: Scenario) -> Scene:
     add_contacts(spec, [])
     _let_touch(spec, scenario.pad.friction)
     _add_sensors(spec)
-    model = compile_spec(spec, "the scene")
+    with warnings.catch_warnings():
+        # No name is there twice, and none is saved.
+        warnings.filterwarnings("ignore", message="Attaching a spec with an empty prefix")
+        model = compile_spec(spec, "the scene")
     set_stops(model, scenario.hinge)
     settle_solver(model)
     return _scene(model, stand)
@@ -68,7 +73,9 @@ def _add_pad(spec: mujoco.MjSpec, scenario: Scenario, stand: Array, eye: Array) 
     for x in (-0.8, 0.8):
         for y in (-0.8, 0.8):
             half = 0.5 * p.height_m - THICK_M
-            pad.add_geom(size=[0.02, 0.02, half], pos=[x * p.half_m, y * p.half_m, -half - 2.0 * THICK_M], mass=0, **look)
+            pad.add_geom(
+                size=[0.02, 0.02, half], pos=[x * p.half_m, y * p.half_m, -half - 2.0 * THICK_M], mass=0, **look
+            )
     ring = {"type": mujoco.mjtGeom.mjGEOM_CYLINDER, "group": 2, "mass": 0}
     pad.add_geom(size=[0.3, 0.0005, 0], pos=[0, 0, 0.0002], rgba=[0.92, 0.92, 0.9, 1], **ring)
     pad.add_geom(size=[0.27, 0.0006, 0], pos=[0, 0, 0.0002], rgba=[0.36, 0.42, 0.48, 1], **ring)

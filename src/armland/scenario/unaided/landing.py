@@ -28,7 +28,7 @@ class Descent(Section):
     align_m: of.Length = key(0.1, "horizontal distance to its station within which it goes down")
     give_up_m: of.Length = key(0.3, "distance at which a descent is given up and begun again")
     timed: bool = key(True, "whether it waits for a quiet moment; false: it comes down when it is on its station")
-    quiet: of.Factor = key(0.6, "ratio: unrest of pad and UAV, (Q.2), below which it comes down")
+    quiet: of.Factor = key(0.6, "ratio: unrest of pad and UAV, below which it comes down")
     patience_s: of.PositiveSeconds = key(15.0, "after which it comes down whatever the unrest")
     cut_m: of.Distance = key(0.01, "height at which the rotors are stopped")
     level_m: of.Distance = key(0.0, "height from which on it levels out to the pad; 0: not at all")
