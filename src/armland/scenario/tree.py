@@ -20,7 +20,7 @@ from armland.scenario.refusal import problems, refusal
 from armland.scenario.sensing import Camera, Imperfections, MotionReference, Sensors
 from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.uav import Link, Onboard, Rotors, Uav
-from armland.scenario.unaided.landing import Descent, Pad
+from armland.scenario.unaided.landing import Descent, Hexapod, Pad
 
 HARDWARE = (
     "arm",
@@ -31,6 +31,7 @@ HARDWARE = (
     "skids",
     "cradle",
     "pad",
+    "hexapod",
     "camera",
     "uav",
     "rotors",
@@ -74,6 +75,7 @@ class Scenario(Section):
     skids: Skids = Skids()
     cradle: Cradle = Cradle()
     pad: Pad = Pad()
+    hexapod: Hexapod = Hexapod()
     camera: Camera = Camera()
     uav: Uav = Uav()
     rotors: Rotors = Rotors()

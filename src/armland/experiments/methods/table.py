@@ -26,6 +26,7 @@ METHODS: dict[str, Method] = {
     "unassisted-untimed": Method(
         "unassisted", "unassisted", "lands by itself as soon as it can", {"descent": {"timed": False}}
     ),
+    "hexapod": Method("hexapod", "hexapod", "lands by itself on a pad that six legs hold still"),
 }
 """By name, in the order in which they are shown."""
 

@@ -5,7 +5,7 @@ from armland.mission.table.mission import Criterion, Mission
 from armland.mission.table.phases import Phase
 from armland.scenario import Scenario
 
-USES = (*SHARED, *GEAR, *ON_MAGNET, "pad", "descent")
+USES = (*SHARED, *GEAR, *ON_MAGNET, "pad", "hexapod", "descent")
 """All that a landing by the arm uses, too: one scenario is flown by every method."""
 
 PHASES = (
@@ -50,4 +50,12 @@ UNASSISTED = Mission(
     doc="""The same UAV lands on a flat pad on the same deck, by the camera, link and motion reference that the arm's landing has, too;
 the camera looks up through a window in the pad. It goes along with the deck, waits near the pad for a quiet moment, comes down
 and stops its rotors.""",
+)
+
+HEXAPOD = UNASSISTED._replace(
+    name="hexapod",
+    summary="land by itself on a pad that six legs hold still",
+    doc="""As `unassisted`, on a pad that stands on six legs. By a motion reference of its own on the hull the platform cancels what the hull does,
+as far as stroke, speed and acceleration of its legs let it. Camera and the motion reference that the UAV is guided by stand on the
+platform. Nothing clamps the UAV: it may slide and tip.""",
 )

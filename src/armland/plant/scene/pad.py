@@ -9,9 +9,10 @@ from armland.mission.unaided.plan import places
 from armland.models.description import EE_SITE, compile_spec
 from armland.plant.scene.composition import Scene
 from armland.plant.scene.contacts import add_contacts, add_pair
-from armland.plant.scene.deck import JOINTS, moves, put_on_deck, settle_solver
+from armland.plant.scene.deck import DECK, JOINTS, moves, put_on_deck, settle_solver
 from armland.plant.scene.eye import mount_marker
-from armland.plant.scene.sensors import NET_FORCE, add_frames, sensor_addresses
+from armland.plant.scene.platform import PLATFORM, draw_legs, geometry, put_on_platform
+from armland.plant.scene.sensors import DECK_SENSORS, NET_FORCE, add_frames, sensor_addresses
 from armland.plant.scene.surroundings import add_surroundings
 from armland.plant.scene.uav import ON_UAV, PLATE, UAV, let_fly, set_stops, site, uav_spec
 from armland.records import MOST_ROTORS
@@ -28,8 +29,12 @@ ON_FRAME = 0.4
 """Friction of frame and plate on the pad, as on rails."""
 
 
-def build_pad_scene(scenario: Scenario) -> Scene:
+def build_pad_scene(scenario: Scenario, on_legs: bool = False) -> Scene:
     """Compose and compile the scene of a scenario's UAV and pad.
+
+    Args:
+        scenario: what the plant really has.
+        on_legs: whether the pad stands on a platform on six legs, where the sea moves the deck.
 
     Raises:
         ModelError: a UAV file that cannot be used.
@@ -40,12 +45,17 @@ def build_pad_scene(scenario: Scenario) -> Scene:
     lever = site(uav, "pivot").pos - site(uav, "cm").pos
     stand, eye = places(scenario, lever)
     _add_pad(spec, scenario, stand, eye)
+    on_legs = on_legs and scenario.sea.moves
+    if on_legs:
+        spec = put_on_platform(spec, geometry(scenario)[0])
     if scenario.sea.moves:
         spec = put_on_deck(spec)
         # What stands on the deck keeps bodies of its own: contacts and forces are asked of them.
         spec.compiler.fusestatic = False
     _set_options(spec, scenario)
     add_surroundings(spec)
+    if on_legs:
+        draw_legs(spec, *geometry(scenario))
     body = let_fly(spec, uav, scenario)
     mount_marker(body, scenario.camera)
     spec.worldbody.add_frame().attach_body(body, UAV, "")
@@ -55,7 +65,7 @@ def build_pad_scene(scenario: Scenario) -> Scene:
         mark.group = 4
     add_contacts(spec, [])
     _let_touch(spec, scenario.pad.friction)
-    _add_sensors(spec)
+    _add_sensors(spec, PLATFORM if on_legs else DECK)
     with warnings.catch_warnings():
         # No name is there twice, and none is saved.
         warnings.filterwarnings("ignore", message="Attaching a spec with an empty prefix")
@@ -102,8 +112,12 @@ def _let_touch(spec: mujoco.MjSpec, friction: float) -> None:
             add_pair(spec, name, PAD, ON_FRAME, False)
 
 
-def _add_sensors(spec: mujoco.MjSpec) -> None:
+def _add_sensors(spec: mujoco.MjSpec, deck: str) -> None:
     add_frames(spec, True)
+    for sensor in spec.sensors:
+        if sensor.name in DECK_SENSORS:
+            # To the UAV the platform is the deck.
+            sensor.objname = deck
     S, O = mujoco.mjtSensor, mujoco.mjtObj
     for name, kind, on in (("cradle_force", O.mjOBJ_BODY, PAD), ("ground_force", O.mjOBJ_GEOM, "floor")):
         sensor = spec.add_sensor(name=name, type=S.mjSENS_CONTACT, objtype=kind, objname=on)

@@ -6,8 +6,10 @@ from armland.mission.unaided.controller import control_unaided
 from armland.mission.unaided.decide import AWAY, DONE
 from armland.native import mj_step
 from armland.plant.cycle import APPLIED, Views, actuate, sense
-from armland.plant.noise import Noise
+from armland.plant.noise import BLOCK, Noise
+from armland.plant.unaided.hexapod import compensate
 from armland.records import Records
+from armland.rotations import Array
 
 
 @njit(cache=True, nogil=True)
@@ -18,6 +20,7 @@ def fly_unaided(
     noise: Noise,
     physics: tuple[int, int],
     board: Records,
+    machine: tuple[Records, Array],
     watch: int,
     rows: Records,
 ) -> tuple[int, int]:
@@ -30,6 +33,7 @@ def fly_unaided(
         noise: whose block holds all ticks flown.
         physics: addresses of the plant's `MjModel` and `MjData`.
         board: (1,) of `unaided.board`, updated.
+        machine: (1,) of `hexapod.layout`, updated, and the noise (BLOCK, 12) of its motion reference.
         watch: ticks for which a mission that has ended is watched further.
         rows: (ticks,) of `records.tick_layout`, written.
 
@@ -44,6 +48,10 @@ def fly_unaided(
         status = actuate(k + i, w, views, noise, t.mission.phase, t.command, t.truth)
         if status != APPLIED:
             return i, status
+        if machine[0][0].fitted:
+            row = (k + i) % BLOCK
+            given = noise.deck[row], machine[1][row]
+            compensate(k + i, machine[0][0], *given, views.qpos, views.qvel, views.qfrc_applied, views.qfrc_bias)
         rows[i] = t
         mj_step(physics[0], physics[1])
         if s.phase in (DONE, AWAY) and k + i - s.begin >= watch:

@@ -1,17 +1,21 @@
 """The simulated world of a landing without an arm behind the same port."""
 
 import numpy as np
+from numba import njit
 
 from armland.errors import PlantError
 from armland.mission.unaided.controller import UnaidedController, link_needed
 from armland.mission.unaided.plan import UnaidedPlan
 from armland.plant.cycle import APPLIED
 from armland.plant.deviation.bodies import value
-from armland.plant.noise import BLOCK
+from armland.plant.noise import BLOCK, stream
 from armland.plant.scene.pad import PAD, build_pad_scene
+from armland.plant.scene.platform import has_platform
 from armland.plant.simulator import Simulator
+from armland.plant.unaided import hexapod
 from armland.plant.unaided.block import fly_unaided
-from armland.records import Records
+from armland.records import Records, Tick
+from armland.rotations import Array
 from armland.scenario import Scenario
 
 NEEDED = ("look", "sense", "actuate")
@@ -30,7 +34,34 @@ class PadSimulator(Simulator):
     """
 
     def __init__(self, scenario: Scenario, plan: UnaidedPlan) -> None:
-        super().__init__(scenario, plan.home, "air", plan.names, scene=build_pad_scene(scenario))
+        scene = build_pad_scene(scenario, plan.mission.name == "hexapod")
+        self.machine: Records = np.zeros(1, hexapod.layout())
+        self._hull_noise = np.zeros((BLOCK, 12))
+        self._hull = stream(scenario.run.seed, "hull")
+        super().__init__(scenario, plan.home, "air", plan.names, scene=scene)
+        if has_platform(self.scene.model):
+            hexapod.tell(self.machine, scenario, self.scene, self.world["told"]["reference"])
+
+    def connect(self) -> None:
+        """Put everything at its start; the platform in its neutral pose."""
+        if self.machine["fitted"].any():
+            hexapod.forget(self.machine)
+            self._hull = stream(self.scenario.run.seed, "hull")
+        super().connect()
+
+    def draw_noise(self) -> None:
+        """Draw the next block of noise."""
+        super().draw_noise()
+        if self.machine["fitted"].any():
+            self._hull.standard_normal(out=self._hull_noise)
+
+    def command(self, tick: Tick) -> Records:
+        """Apply the command of `tick` and step the physics once, as `Simulator.command`."""
+        if self.machine["fitted"].any():
+            row, v = self.tick % BLOCK, self.views
+            given = self.noise.deck[row], self._hull_noise[row], v.qpos, v.qvel, v.qfrc_applied, v.qfrc_bias
+            _compensate(self.tick, self.machine, *given)
+        return super().command(tick)
 
     def _link(self) -> None:
         link_needed(NEEDED, self.scene.joints)
@@ -48,7 +79,13 @@ class PadSimulator(Simulator):
         if self.tick % BLOCK == 0:
             self.draw_noise()
         k, physics = self.tick, (self.scene.model._address, self.data._address)
-        some, board = rows[: BLOCK - k % BLOCK], controller.board
-        flown, status = fly_unaided(k, self.world, self.views, self.noise, physics, board, controller.plan.watch, some)
+        some, brain, machine = rows[: BLOCK - k % BLOCK], controller.board, (self.machine, self._hull_noise)
+        world = k, self.world, self.views, self.noise, physics
+        flown, status = fly_unaided(*world, brain, machine, controller.plan.watch, some)
         self.tick += flown
         return int(flown), None if status == APPLIED else self.diverged(self.tick)
+
+
+@njit(cache=True)
+def _compensate(k: int, p: Records, hull: Array, noise: Array, qpos: Array, qvel: Array, applied: Array, bias: Array) -> None:
+    hexapod.compensate(k, p[0], hull, noise, qpos, qvel, applied, bias)

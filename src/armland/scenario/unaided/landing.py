@@ -32,3 +32,17 @@ class Descent(Section):
     patience_s: of.PositiveSeconds = key(15.0, "after which it comes down whatever the unrest")
     cut_m: of.Distance = key(0.01, "height at which the rotors are stopped")
     level_m: of.Distance = key(0.0, "height from which on it levels out to the pad; 0: not at all")
+
+
+class Hexapod(Section):
+    """Platform on six legs that carries the pad and cancels the hull's motion. All numbers are assumptions: a small electric motion
+    base; no data sheet was at hand."""
+
+    foot_radius_m: of.Length = key(0.55, "circle of the legs' feet on the deck")
+    head_radius_m: of.Length = key(0.35, "circle of their heads below the pad")
+    stroke_m: of.Length = key(0.3, "of each leg, half of it either way from the neutral pose")
+    speed_mps: of.PositiveSpeed = key(0.5, "largest of a leg")
+    acceleration_mps2: of.PositiveAcceleration = key(5.0, "largest of a leg")
+    servo_rad_s: of.PositiveBandwidth = key(40.0, "bandwidth of a leg's servo")
+    fade_s: of.PositiveSeconds = key(2.0, "time constant with which it comes back to its middle")
+    travel_m: of.Length = key(0.12, "farthest that its middle is asked to go: the rest of the stroke holds the attitude")
