@@ -7,7 +7,7 @@ import sys
 import time
 
 from armland.experiments.methods.table import METHODS
-from armland.experiments.methods.tuning import draw, flown, tune
+from armland.experiments.methods.tuning import draw, flown, near, tune
 from armland.scenario import load_scenario
 from armland.scenario.tables import update
 
@@ -21,7 +21,7 @@ STATION = {
     "control.station.gust_share": (0.0, 1.0),
 }
 DESCENT = {
-    "descent.sink_mps": (0.06, 0.4),
+    "descent.sink_mps": (0.05, 0.3),
     "descent.ready_m": (0.08, 0.4),
     "descent.level_m": (0.0, 0.4),
     "descent.cut_m": (0.0, 0.05),
@@ -68,8 +68,12 @@ def main() -> None:
             print(f"{count} flights, {time.monotonic() - begun:.0f} s", flush=True)
         return flown(scenario, method, seed)
 
-    trials = tune(METHODS[name], space, conditions(name), SEEDS, draw(space, number, 1), BOUNDS, fly)
-    print(f"{name}: {count} flights of seeds {SEEDS[0]} to {SEEDS[-1]}, {number} candidates")
+    flights, method = conditions(name), METHODS[name]
+    trials = tune(method, space, flights, SEEDS, draw(space, number, 1), BOUNDS, fly)
+    box = near(space, trials[0].settings)
+    print(f"first round, {count} flights: {trials[0]}", flush=True)
+    trials = sorted([trials[0], *tune(method, space, flights, SEEDS, draw(box, number, 2), BOUNDS, fly)], key=lambda t: t.cost)
+    print(f"{name}: {count} flights of seeds {SEEDS[0]} to {SEEDS[-1]}, twice {number} candidates")
     for trial in trials[:5]:
         print(f"cost {trial.cost:.3f} over {trial.flights}: {trial.settings or 'as they stand'}")
 

@@ -4,13 +4,13 @@ from armland.errors import ConfigurationError
 from armland.mission.missions.experiments import E1, E2, E3, TRACK
 from armland.mission.missions.landing import LANDING
 from armland.mission.missions.takeoff import TAKEOFF
-from armland.mission.missions.unaided import HEXAPOD, UNASSISTED
+from armland.mission.missions.unaided import HEXAPOD, TETHER, UNASSISTED
 from armland.mission.table.mission import Mission
 
 MISSIONS: dict[str, Mission] = {m.name: m for m in (E1, E2, E3, TRACK, LANDING, TAKEOFF)}
 """Those of an arm."""
 
-UNAIDED: dict[str, Mission] = {m.name: m for m in (UNASSISTED, HEXAPOD)}
+UNAIDED: dict[str, Mission] = {m.name: m for m in (UNASSISTED, HEXAPOD, TETHER)}
 """Those without one: other ways to land, see `mission.unaided`."""
 
 

@@ -20,7 +20,7 @@ from armland.scenario.refusal import problems, refusal
 from armland.scenario.sensing import Camera, Imperfections, MotionReference, Sensors
 from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.uav import Link, Onboard, Rotors, Uav
-from armland.scenario.unaided.landing import Descent, Hexapod, Pad
+from armland.scenario.unaided.landing import Descent, Hexapod, Pad, Tether
 
 HARDWARE = (
     "arm",
@@ -32,6 +32,7 @@ HARDWARE = (
     "cradle",
     "pad",
     "hexapod",
+    "tether",
     "camera",
     "uav",
     "rotors",
@@ -76,6 +77,7 @@ class Scenario(Section):
     cradle: Cradle = Cradle()
     pad: Pad = Pad()
     hexapod: Hexapod = Hexapod()
+    tether: Tether = Tether()
     camera: Camera = Camera()
     uav: Uav = Uav()
     rotors: Rotors = Rotors()

@@ -27,6 +27,7 @@ METHODS: dict[str, Method] = {
         "unassisted", "unassisted", "lands by itself as soon as it can", {"descent": {"timed": False}}
     ),
     "hexapod": Method("hexapod", "hexapod", "lands by itself on a pad that six legs hold still"),
+    "tether": Method("tether", "tether", "is pulled down by a winch, thrusting against its rope"),
 }
 """By name, in the order in which they are shown."""
 

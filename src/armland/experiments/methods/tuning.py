@@ -1,8 +1,9 @@
 """One optimiser for every method: the best of random settings, on seeds that nothing is judged by.
 
 Settings are drawn as a Latin hypercube in each method's space; the first are those that stand in its scenario. All fly the same few
-training seeds under each condition; the best quarter fly the rest of them, and the best of those is taken. So each method has as many
-flights as the others, and one that luck of a few seeds made look good must keep its promise on more.
+training seeds under each condition; the best quarter fly the rest of them, and the best of those is taken. Then the same once more in a
+smaller box about it. So each method has as many flights as the others, and one that luck of a few seeds made look good must keep its
+promise on more.
 
 | symbol | name |
 |---|---|
@@ -63,6 +64,15 @@ def draw(space: Space, number: int, seed: int) -> list[dict[str, float]]:
         {path: float(f"{low + x * (high - low):.3g}") for x, (path, (low, high)) in zip(row, space.items(), strict=True)}
         for row in unit
     ]
+
+
+def near(space: Space, settings: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    """The box about the `settings`, a third as wide as the `space` each way, within it; the space itself about none."""
+    out = {}
+    for path, (low, high) in space.items():
+        middle, half = settings.get(path, 0.5 * (low + high)), (high - low) / (6.0 if path in settings else 2.0)
+        out[path] = (max(low, middle - half), min(high, middle + half))
+    return out
 
 
 def flown(scenario: Scenario, method: Method, seed: int) -> dict[str, Any]:

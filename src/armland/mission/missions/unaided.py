@@ -5,7 +5,7 @@ from armland.mission.table.mission import Criterion, Mission
 from armland.mission.table.phases import Phase
 from armland.scenario import Scenario
 
-USES = (*SHARED, *GEAR, *ON_MAGNET, "pad", "hexapod", "descent")
+USES = (*SHARED, *GEAR, *ON_MAGNET, "pad", "hexapod", "tether", "descent")
 """All that a landing by the arm uses, too: one scenario is flown by every method."""
 
 PHASES = (
@@ -58,4 +58,12 @@ HEXAPOD = UNASSISTED._replace(
     doc="""As `unassisted`, on a pad that stands on six legs. By a motion reference of its own on the hull the platform cancels what the hull does,
 as far as stroke, speed and acceleration of its legs let it. Camera and the motion reference that the UAV is guided by stand on the
 platform. Nothing clamps the UAV: it may slide and tip.""",
+)
+
+TETHER = UNASSISTED._replace(
+    name="tether",
+    summary="be pulled down on a flat pad by a rope",
+    doc="""As `unassisted`, with a rope from a winch below the pad to the UAV's hinge. Until it comes down the winch keeps the rope just
+taut. Then the UAV thrusts upwards by more than its weight and the winch reels in: its height above the pad is the rope's length,
+whatever the deck does. Sideways it keeps its station. On the pad the rope holds it.""",
 )

@@ -34,6 +34,7 @@ def descent_told() -> np.dtype:
             ("level", "f8"),  # m
             ("find_s", "f8"),  # s, after which a UAV that is not seen flies away
             ("retries", "i8"),
+            ("pull", "f8"),  # N, beyond the weight, against the rope while it comes down; 0: there is none
         ]
     )
 
@@ -51,6 +52,7 @@ def descent_kept() -> np.dtype:
             ("sinking", "f8"),  # m/s, speed at which that falls
             ("mean_tilt", "f8", (2,)),  # rad, of the deck
             ("known", "i8"),  # 1 once that has been looked at
+            ("carries", "f8"),  # N, command that carries the weight, as known before the rope pulls
             ("unrest", "f8"),  # U, ratio, `control.laws.unaided.quiet`
         ]
     )

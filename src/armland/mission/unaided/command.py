@@ -12,6 +12,9 @@ from armland.mission.unaided.decide import AWAY, DESCEND, DONE, FIND, SETTLE, he
 from armland.records import Record, UavMode
 from armland.rotations import conjugate, from_rotation_vector, matrix, multiply, rotation_error
 
+RAMP_S = 0.5
+"""In which the UAV begins to thrust against the rope: at once, it would leap until the rope is taut."""
+
 AUTONOMOUS, GUIDED, OFF = UavMode.AUTONOMOUS, UavMode.GUIDED, UavMode.OFF
 
 
@@ -60,7 +63,14 @@ def _guide(b: Record) -> None:
     place, moving = t.stand.copy(), np.zeros(3)
     place[2] += d.place
     moving[2] = -d.sinking
+    height = s.integral[2]
     keep(place, p.lever, moving, b)
+    if d.phase == DESCEND and t.pull > 0.0:
+        # The rope has the height; what it pulls with is no error of the thrust.
+        ramp = min((b.tick.measurement.tick - d.begin) * t.tick_s / RAMP_S, 1.0)
+        s.thrust, s.integral[2] = min(d.carries + ramp * t.pull, p.thrust_max), height
+    else:
+        d.carries = s.hover
     if d.phase == DESCEND and t.level > 0.0:
         _level_out(min(max(height_of(b) / t.level, 0.0), 1.0), b)
 

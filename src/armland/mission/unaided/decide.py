@@ -35,6 +35,9 @@ UNSEEN_S = 0.4
 
 LOW_M = 0.06
 
+PRESSED_M = 0.03
+"""Height, as it is believed, below which a UAV that a rope pulls down stands on the pad."""
+
 
 @njit(cache=True)
 def decide(b: Record) -> None:
@@ -80,7 +83,9 @@ def _next(b: Record) -> int:
         calm = p.timed == 0 or s.unrest < p.quiet or elapsed > p.patience
         return DESCEND if there and calm else READY
     if s.phase == DESCEND:
-        if height < p.cut or s.place < -0.9 * UNDER_M:
+        # Pulled down, it is pressed on the pad, and nothing is in haste: its height must be beyond doubt.
+        pulled = p.pull > 0.0 and seen and height > PRESSED_M
+        if (height < p.cut and p.pull == 0.0) or (s.place < -0.9 * UNDER_M and not pulled):
             return SETTLE
         if height > LOW_M and (aside > p.give_up or not seen):
             s.retries += 1

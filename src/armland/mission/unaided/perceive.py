@@ -8,6 +8,7 @@ from armland.linking import head
 from armland.mission.estimate import acting_thrust, learn_uplink, predict_torque, watch_downlink
 from armland.mission.screening import screened
 from armland.mission.sight import follow, know
+from armland.mission.unaided.decide import DESCEND
 from armland.models.environment import apparent_gravity
 from armland.records import Record
 
@@ -49,6 +50,8 @@ def _follow(b: Record, stands: bool) -> None:
         np.empty(3),
         STILL.copy(),
     )
+    if b.kept.descent.phase == DESCEND and b.told.descent.pull > 0.0:
+        push[2] = -b.told.descent.pull / p.mass
     lift = e.thrust * p.weight / max(b.kept.act.hover, 1e-3)
     if stands:
         # What the pad carries goes along with it.

@@ -78,7 +78,7 @@ def unaided_plan(scenario: Scenario, mission: str) -> UnaidedPlan:
         mission=value,
         scenario=believed,
         phases=value.phases(believed),
-        told=tell(believed, flies, stand, eye),
+        told=tell(believed, flies, stand, eye, believed.tether.pull_n if mission == "tether" else 0.0),
         environment=on_land(believed.environment.gravity_mps2),
         ticks=round(run.duration_s * run.rate_hz),
         watch=round(run.watch_s * run.rate_hz),

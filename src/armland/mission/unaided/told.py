@@ -20,7 +20,7 @@ ON_STATION_MPS = 0.25
 """Speed of a UAV that is on its station: that of a touchdown."""
 
 
-def tell(scenario: Scenario, flyer: Flyer, stand: Array, eye: Array, joints: int = 0) -> Records:
+def tell(scenario: Scenario, flyer: Flyer, stand: Array, eye: Array, pull: float = 0.0) -> Records:
     """The board's `told` (1,).
 
     Args:
@@ -28,11 +28,12 @@ def tell(scenario: Scenario, flyer: Flyer, stand: Array, eye: Array, joints: int
         flyer: what flies.
         stand: pivot of a UAV that stands on the pad (3,), m, D.
         eye: optical centre (3,), m, D.
-        joints: things that the ground moves.
+        pull: thrust beyond the weight, N, against a rope; 0: there is none.
     """
-    told = np.zeros(1, board_layout(joints)["told"])
+    told = np.zeros(1, board_layout(0)["told"])
     _estimate(told["estimate"], scenario, flyer)
     _descent(told["descent"], scenario, stand, eye)
+    told["descent"]["pull"] = pull
     tell_station(told["act"]["uav"], scenario, flyer, stand, RIDES_RAD_S)
     told["limit"]["tick_s"], limit = 1.0 / scenario.run.rate_hz, told["limit"]
     for name in ("q_max", "qd_max", "tau_max", "torque_rate", "hinge_max"):

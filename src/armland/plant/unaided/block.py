@@ -8,8 +8,38 @@ from armland.native import mj_step
 from armland.plant.cycle import APPLIED, Views, actuate, sense
 from armland.plant.noise import BLOCK, Noise
 from armland.plant.unaided.hexapod import compensate
-from armland.records import Records
+from armland.plant.unaided.tether import pull
+from armland.records import Record, Records
 from armland.rotations import Array
+
+
+Machine = tuple[Records, Array, Records]
+"""(1,) of `hexapod.layout`, the noise (BLOCK, 12) of its motion reference, (1,) of `tether.layout`."""
+
+
+@njit(cache=True)
+def act_all(
+    k: int, w: Record, views: Views, noise: Noise, phase: int, command: Record, truth: Record, machine: Machine
+) -> int:
+    """Let all devices act at tick `k`, those of the method as well; arguments and result as for `cycle.actuate`, and the `machine`."""
+    status = int(actuate(k, w, views, noise, phase, command, truth))
+    if status != APPLIED:
+        return status
+    platform, row, rope = machine[0][0], k % BLOCK, machine[2][0]
+    if platform.fitted:
+        given = noise.deck[row], machine[1][row]
+        compensate(k, platform, *given, views.qpos, views.qvel, views.qfrc_applied, views.qfrc_bias)
+    if rope.fitted:
+        pull(rope, phase, truth, views.xipos[w.uav], views.xfrc_applied[w.uav])
+    return status
+
+
+@njit(cache=True)
+def act_on(
+    k: int, world: Records, views: Views, noise: Noise, phase: int, command: Records, truth: Records, machine: Machine
+) -> int:
+    """`act_all` for records (1,), from Python."""
+    return int(act_all(k, world[0], views, noise, phase, command[0], truth[0], machine))
 
 
 @njit(cache=True, nogil=True)
@@ -20,7 +50,7 @@ def fly_unaided(
     noise: Noise,
     physics: tuple[int, int],
     board: Records,
-    machine: tuple[Records, Array],
+    machine: Machine,
     watch: int,
     rows: Records,
 ) -> tuple[int, int]:
@@ -33,7 +63,7 @@ def fly_unaided(
         noise: whose block holds all ticks flown.
         physics: addresses of the plant's `MjModel` and `MjData`.
         board: (1,) of `unaided.board`, updated.
-        machine: (1,) of `hexapod.layout`, updated, and the noise (BLOCK, 12) of its motion reference.
+        machine: of the method, updated.
         watch: ticks for which a mission that has ended is watched further.
         rows: (ticks,) of `records.tick_layout`, written.
 
@@ -45,13 +75,9 @@ def fly_unaided(
     for i in range(rows.shape[0]):
         sense(k + i, w, views, noise, t.measurement, t.truth)
         control_unaided(board)
-        status = actuate(k + i, w, views, noise, t.mission.phase, t.command, t.truth)
+        status = act_all(k + i, w, views, noise, t.mission.phase, t.command, t.truth, machine)
         if status != APPLIED:
             return i, status
-        if machine[0][0].fitted:
-            row = (k + i) % BLOCK
-            given = noise.deck[row], machine[1][row]
-            compensate(k + i, machine[0][0], *given, views.qpos, views.qvel, views.qfrc_applied, views.qfrc_bias)
         rows[i] = t
         mj_step(physics[0], physics[1])
         if s.phase in (DONE, AWAY) and k + i - s.begin >= watch:

@@ -1,7 +1,7 @@
 """The simulated world of a landing without an arm behind the same port."""
 
+import mujoco
 import numpy as np
-from numba import njit
 
 from armland.errors import PlantError
 from armland.mission.unaided.controller import UnaidedController, link_needed
@@ -12,10 +12,9 @@ from armland.plant.noise import BLOCK, stream
 from armland.plant.scene.pad import PAD, build_pad_scene
 from armland.plant.scene.platform import has_platform
 from armland.plant.simulator import Simulator
-from armland.plant.unaided import hexapod
-from armland.plant.unaided.block import fly_unaided
+from armland.plant.unaided import hexapod, tether
+from armland.plant.unaided.block import act_on, fly_unaided
 from armland.records import Records, Tick
-from armland.rotations import Array
 from armland.scenario import Scenario
 
 NEEDED = ("look", "sense", "actuate")
@@ -36,17 +35,21 @@ class PadSimulator(Simulator):
     def __init__(self, scenario: Scenario, plan: UnaidedPlan) -> None:
         scene = build_pad_scene(scenario, plan.mission.name == "hexapod")
         self.machine: Records = np.zeros(1, hexapod.layout())
+        self.tether: Records = np.zeros(1, tether.layout())
         self._hull_noise = np.zeros((BLOCK, 12))
         self._hull = stream(scenario.run.seed, "hull")
         super().__init__(scenario, plan.home, "air", plan.names, scene=scene)
         if has_platform(self.scene.model):
             hexapod.tell(self.machine, scenario, self.scene, self.world["told"]["reference"])
+        if plan.mission.name == "tether":
+            tether.tell(self.tether, scenario, self.scene)
 
     def connect(self) -> None:
         """Put everything at its start; the platform in its neutral pose."""
         if self.machine["fitted"].any():
             hexapod.forget(self.machine)
             self._hull = stream(self.scenario.run.seed, "hull")
+        tether.forget(self.tether)
         super().connect()
 
     def draw_noise(self) -> None:
@@ -57,11 +60,16 @@ class PadSimulator(Simulator):
 
     def command(self, tick: Tick) -> Records:
         """Apply the command of `tick` and step the physics once, as `Simulator.command`."""
-        if self.machine["fitted"].any():
-            row, v = self.tick % BLOCK, self.views
-            given = self.noise.deck[row], self._hull_noise[row], v.qpos, v.qvel, v.qfrc_applied, v.qfrc_bias
-            _compensate(self.tick, self.machine, *given)
-        return super().command(tick)
+        phase = int(tick.mission["phase"][0])
+        given = self.world, self.views, self.noise, phase, tick.command, tick.truth
+        machine = self.machine, self._hull_noise, self.tether
+        if act_on(self.tick, *given, machine) != APPLIED:
+            error = self.diverged(self.tick)
+            raise error
+        self._applied[:] = tick.command
+        mujoco.mj_step(self.scene.model, self.data)
+        self.tick += 1
+        return self._applied
 
     def _link(self) -> None:
         link_needed(NEEDED, self.scene.joints)
@@ -79,13 +87,8 @@ class PadSimulator(Simulator):
         if self.tick % BLOCK == 0:
             self.draw_noise()
         k, physics = self.tick, (self.scene.model._address, self.data._address)
-        some, brain, machine = rows[: BLOCK - k % BLOCK], controller.board, (self.machine, self._hull_noise)
+        some, brain, machine = rows[: BLOCK - k % BLOCK], controller.board, (self.machine, self._hull_noise, self.tether)
         world = k, self.world, self.views, self.noise, physics
         flown, status = fly_unaided(*world, brain, machine, controller.plan.watch, some)
         self.tick += flown
         return int(flown), None if status == APPLIED else self.diverged(self.tick)
-
-
-@njit(cache=True)
-def _compensate(k: int, p: Records, hull: Array, noise: Array, qpos: Array, qvel: Array, applied: Array, bias: Array) -> None:
-    hexapod.compensate(k, p[0], hull, noise, qpos, qvel, applied, bias)
