@@ -10,7 +10,7 @@ import pytest
     [
         (["arm"], "two or more different methods"),
         (["arm", "arm"], "two or more different methods"),
-        (["arm", "parachute"], "method 'parachute' is unknown; known are arm, unassisted"),
+        (["arm", "parachute"], "method 'parachute' is unknown; known are arm, arm-paper, unassisted"),
         (["unassisted", "unassisted-untimed", "--sea", "9"], "sea states are 0"),
         (["unassisted", "unassisted-untimed", "--runs", "0"], "Invalid value for '--runs'"),
         (["unassisted", "unassisted-untimed", "--set", "pad.friction=9"], "pad.friction"),

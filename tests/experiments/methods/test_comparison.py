@@ -118,7 +118,7 @@ def test_each_method_is_a_mission_with_a_scenario(name):
 
 
 def test_unknown_method_names_those_that_are():
-    with pytest.raises(ConfigurationError, match="'parachute' is unknown; known are arm, unassisted"):
+    with pytest.raises(ConfigurationError, match="'parachute' is unknown; known are arm, arm-paper, unassisted"):
         method_named("parachute")
 
 

@@ -26,7 +26,10 @@ The rows of each method are a campaign's store, which `armland campaign report` 
 Exit code: 0 when it is done, 2 for bad input, 3 if something broke, 130 if it was stopped.
 """
 
-METHOD_HELP = "Two or more of arm, unassisted, unassisted-untimed; the first is what the others are held against."
+METHOD_HELP = (
+    "Two or more of arm, arm-paper, unassisted, unassisted-untimed, tether, hexapod; the first is what the others are held "
+    "against."
+)
 
 
 @options.taken(

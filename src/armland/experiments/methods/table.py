@@ -21,7 +21,9 @@ class Method(NamedTuple):
 
 METHODS: dict[str, Method] = {
     "arm": Method("landing", "landing", "caught in the air and put down by the arm"),
-    "arm-paper": Method("landing", "arm-paper", "the arm by the published laws, without observers and feed-forward", law="paper"),
+    "arm-paper": Method(
+        "landing", "arm-paper", "the arm by the published laws, without observers and feed-forward", law="paper"
+    ),
     "unassisted": Method("unassisted", "unassisted", "lands by itself, waits for a quiet moment"),
     "unassisted-untimed": Method(
         "unassisted", "unassisted", "lands by itself as soon as it can", {"descent": {"timed": False}}

@@ -55,9 +55,9 @@ and stops its rotors.""",
 HEXAPOD = UNASSISTED._replace(
     name="hexapod",
     summary="land by itself on a pad that six legs hold still",
-    doc="""As `unassisted`, on a pad that stands on six legs. By a motion reference of its own on the hull the platform cancels what the hull does,
-as far as stroke, speed and acceleration of its legs let it. Camera and the motion reference that the UAV is guided by stand on the
-platform. Nothing clamps the UAV: it may slide and tip.""",
+    doc="""As `unassisted`, on a pad that stands on six legs. By a motion reference of its own on the hull the platform cancels what
+the hull does, as far as stroke, speed and acceleration of its legs let it. Camera and the motion reference that the UAV is guided
+by stand on the platform. Nothing clamps the UAV: it may slide and tip.""",
 )
 
 TETHER = UNASSISTED._replace(

@@ -1,13 +1,13 @@
 """The platform on six legs in the scene: a body on joints of its own between deck and pad.
 
-Its pose is set at each tick as the deck's is, see `scene.deck`: six stiff legs are not moved by a UAV of half a kilogram. The frame of the
-platform is the deck's in its neutral pose, so that whoever knows the one as the deck may know the other as it.
+Its pose is set at each tick as the deck's is, see `scene.deck`: six stiff legs are not moved by a UAV of half a kilogram. The frame of
+the platform is the deck's in its neutral pose, so that whoever knows the one as the deck may know the other as it.
 """
 
 import mujoco
 import numpy as np
 
-from armland.models.hexapod import joints_of
+from armland.models.unaided.hexapod import joints_of
 from armland.plant.scene.deck import INERTIA, ground
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -37,7 +37,14 @@ def put_on_platform(pad: mujoco.MjSpec, middle: Array) -> mujoco.MjSpec:
 
 
 def draw_legs(spec: mujoco.MjSpec, middle: Array, feet: Array, heads: Array) -> None:
-    """Draw the legs' lower halves on the deck and their upper ones on the platform, as they stand in the neutral pose; (6, 3), m."""
+    """Draw the legs' lower halves on the deck and their upper ones on the platform, as they stand in the neutral pose.
+
+    Args:
+        spec: of deck and platform.
+        middle: (3,), m, D.
+        feet: (6, 3), m, D.
+        heads: (6, 3), m, from the middle.
+    """
     look = {"type": mujoco.mjtGeom.mjGEOM_CAPSULE, "mass": 0, "group": 2}
     deck, platform = ground(spec), spec.body(PLATFORM)
     for foot, head in zip(feet, heads + middle, strict=True):

@@ -12,7 +12,6 @@ from armland.plant.unaided.tether import pull
 from armland.records import Record, Records
 from armland.rotations import Array
 
-
 Machine = tuple[Records, Array, Records]
 """(1,) of `hexapod.layout`, the noise (BLOCK, 12) of its motion reference, (1,) of `tether.layout`."""
 
@@ -49,9 +48,8 @@ def fly_unaided(
     views: Views,
     noise: Noise,
     physics: tuple[int, int],
-    board: Records,
+    brain: tuple[Records, int],
     machine: Machine,
-    watch: int,
     rows: Records,
 ) -> tuple[int, int]:
     """Fly from tick `k` until `rows` are full or the mission is over; arguments and results as for `plant.block.fly_block`.
@@ -62,14 +60,14 @@ def fly_unaided(
         views: of MuJoCo's arrays.
         noise: whose block holds all ticks flown.
         physics: addresses of the plant's `MjModel` and `MjData`.
-        board: (1,) of `unaided.board`, updated.
+        brain: (1,) of `unaided.board`, updated; ticks for which a mission that has ended is watched further.
         machine: of the method, updated.
-        watch: ticks for which a mission that has ended is watched further.
         rows: (ticks,) of `records.tick_layout`, written.
 
     Returns:
         How many ticks were flown, and `cycle.APPLIED`, or `NOT_FINITE` where the next one was refused.
     """
+    board, watch = brain
     b, w = board[0], world[0]
     t, s = b.tick, b.kept.descent
     for i in range(rows.shape[0]):

@@ -14,7 +14,7 @@ from numba import njit
 from armland.control.laws.unaided.compensation import follow_length, wanted
 from armland.estimation import deck as known
 from armland.models.environment import environment_layout
-from armland.models.hexapod import leg_rates, legs, pose
+from armland.models.unaided.hexapod import leg_rates, legs, pose
 from armland.plant.scene.composition import Scene
 from armland.plant.scene.deck import INERTIA
 from armland.plant.scene.platform import JOINTS, geometry
@@ -90,7 +90,9 @@ def forget(kept: Records) -> None:
 
 
 @njit(cache=True)
-def compensate(k: int, p: Record, row: Array, noise: Array, qpos: Array, qvel: Array, applied: Array, bias: Array) -> None:
+def compensate(
+    k: int, p: Record, row: Array, noise: Array, qpos: Array, qvel: Array, applied: Array, bias: Array
+) -> None:
     """One tick of the platform.
 
     Args:

@@ -87,8 +87,8 @@ class PadSimulator(Simulator):
         if self.tick % BLOCK == 0:
             self.draw_noise()
         k, physics = self.tick, (self.scene.model._address, self.data._address)
-        some, brain, machine = rows[: BLOCK - k % BLOCK], controller.board, (self.machine, self._hull_noise, self.tether)
-        world = k, self.world, self.views, self.noise, physics
-        flown, status = fly_unaided(*world, brain, machine, controller.plan.watch, some)
+        some, machine = rows[: BLOCK - k % BLOCK], (self.machine, self._hull_noise, self.tether)
+        brain = controller.board, controller.plan.watch
+        flown, status = fly_unaided(k, self.world, self.views, self.noise, physics, brain, machine, some)
         self.tick += flown
         return int(flown), None if status == APPLIED else self.diverged(self.tick)

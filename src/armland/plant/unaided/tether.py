@@ -16,7 +16,7 @@ from numba import njit
 
 from armland.control.laws.unaided.winch import reel
 from armland.mission.unaided.decide import AWAY, DESCEND, DONE, SETTLE
-from armland.models.rope import POINTS, carry_rope
+from armland.models.unaided.rope import POINTS, carry_rope
 from armland.plant.scene.composition import Scene
 from armland.records import Record, Records
 from armland.rotations import Array, cross, matrix, turned
@@ -89,7 +89,7 @@ def pull(p: Record, phase: int, t: Record, xipos: Array, applied: Array) -> None
     asked, rate, give = p.tension[0], 0.0, p.limits[0]
     if phase == DESCEND:
         asked, rate, give = p.tension[1], p.sink, p.limits[1]
-    elif phase == SETTLE or phase == DONE:
+    elif phase in (SETTLE, DONE):
         asked = p.tension[2]
     p.speed = reel(p.speed, p.tension[3], asked, rate, (give, p.limits[2], p.limits[3]), p.tick_s)
     length = p.rope[0] - p.speed * p.tick_s

@@ -45,7 +45,9 @@ class Hexapod(Section):
     acceleration_mps2: of.PositiveAcceleration = key(5.0, "largest of a leg")
     servo_rad_s: of.PositiveBandwidth = key(40.0, "bandwidth of a leg's servo")
     fade_s: of.PositiveSeconds = key(2.0, "time constant with which it comes back to its middle")
-    travel_m: of.Length = key(0.12, "farthest that its middle is asked to go: the rest of the stroke holds the attitude")
+    travel_m: of.Length = key(
+        0.12, "farthest that its middle is asked to go: the rest of the stroke holds the attitude"
+    )
 
 
 class Tether(Section):
@@ -54,7 +56,9 @@ class Tether(Section):
     kg_per_m: Annotated[float, between(1e-4, 1.0)] = key(0.002, "mass of the rope, kg/m: 1.5 mm of polyamide")
     stretch_n: Annotated[float, between(10.0, 1e5)] = key(1500.0, "EA, N, force at which it would be twice as long")
     low_n: of.PositiveForce = key(0.3, "tension that the winch keeps while the UAV flies by itself")
-    pull_n: of.PositiveForce = key(1.2, "thrust beyond the weight with which the UAV pulls on the rope while it comes down")
+    pull_n: of.PositiveForce = key(
+        1.2, "thrust beyond the weight with which the UAV pulls on the rope while it comes down"
+    )
     hold_n: of.PositiveForce = key(3.0, "tension with which a UAV that stands is held on the pad")
     give_mps_per_n: of.PositiveCoefficient = key(2.0, "speed of the winch per newton that the tension is wrong by")
     reel_mps_per_n: of.PositiveCoefficient = key(0.06, "likewise while it reels in")

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from armland.control.laws.unaided.compensation import follow_length, wanted
-from armland.models.hexapod import attitude
+from armland.models.unaided.hexapod import attitude
 
 MIDDLE = np.array([0.62, 0.0, 0.45])
 LIMITS = np.array([0.3, 0.6, 0.5, 5.0, 40.0])

@@ -7,8 +7,8 @@
 | d, R_P | pose that is asked for: d = −e sat(|h|/e) Rᵀ h/|h|, R_P = Rᵀ R_yaw (C.1), sat = tanh | m, D |
 | e | `travel`: farthest from the neutral pose that the middle is asked to go | m |
 
-T lets the platform come back to its middle: of a swing of ω it cancels ωT/√(1 + ω²T²). What the legs' stroke does not hold of the way is
-given up softly, so that the attitude is held all the same. The heading of the hull is left as it is. A leg follows its length by a
+T lets the platform come back to its middle: of a swing of ω it cancels ωT/√(1 + ω²T²). What the legs' stroke does not hold of the way
+is given up softly, so that the attitude is held all the same. The heading of the hull is left as it is. A leg follows its length by a
 servo of bandwidth ω_s within acceleration, speed and stroke:
 
     l̈ = sat(ω_s² (l_d − l) + 2 ω_s (l̇_d − l̇)),  |l̇| ≤ min(l̇_max, √(2 l̈_max s)),  s the way to the stop     (C.2)
@@ -82,7 +82,7 @@ def follow_length(l: float, speed: float, l_d: float, speed_d: float, limits: Ar
         speed: its speed, m/s.
         l_d: length that is asked for, m.
         speed_d: rate of that, m/s.
-        limits: shortest and longest, m; largest speed, m/s, and acceleration, m/s²; bandwidth ω_s, rad/s.
+        limits: (5,), shortest and longest, m; largest speed, m/s, and acceleration, m/s²; bandwidth ω_s, rad/s.
         tick_s: s.
     """
     shortest, longest, fastest, hardest, omega = limits[0], limits[1], limits[2], limits[3], limits[4]

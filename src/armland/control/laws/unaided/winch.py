@@ -7,7 +7,7 @@
 | κ | `give`: speed per newton of error, larger where it keeps a tension than where it reels in | m/s/N |
 | w_r | speed at which it reels in, where the tension is T_d; 0 to keep the tension | m/s |
 
-    w_d = w_r + κ (T_d − T)                                                                              (W.1)
+    w_d = w_r + κ (T_d − T)                                                                              (T.2)
     |ẇ| ≤ `hardest`, |w| ≤ `fastest`
 
 A rope cannot push: where it is slack T is zero, and the winch takes it in. With a large κ the UAV does not feel the deck, with a small
@@ -18,7 +18,9 @@ from numba import njit
 
 
 @njit(cache=True)
-def reel(speed: float, tension: float, asked: float, rate: float, limits: tuple[float, float, float], tick_s: float) -> float:
+def reel(
+    speed: float, tension: float, asked: float, rate: float, limits: tuple[float, float, float], tick_s: float
+) -> float:
     """w after a tick, m/s.
 
     Args:
@@ -30,6 +32,6 @@ def reel(speed: float, tension: float, asked: float, rate: float, limits: tuple[
         tick_s: s.
     """
     give, fastest, hardest = limits
-    wanted = rate + give * (asked - tension)  # (W.1)
+    wanted = rate + give * (asked - tension)  # (T.2)
     wanted = min(max(wanted, -fastest), fastest)
     return float(min(max(wanted, speed - hardest * tick_s), speed + hardest * tick_s))

@@ -25,7 +25,13 @@ STEPS, CLOSE_M = 8, 1e-10
 
 
 def joints_of(foot_radius: float, head_radius: float, below: float) -> tuple[Array, Array]:
-    """Feet (6, 3), m, from a point on the deck below the middle, and heads (6, 3), m, from the middle, `below` m under it."""
+    """Feet (6, 3), m, from a point on the deck below the middle, and heads (6, 3), m, from the middle.
+
+    Args:
+        foot_radius: of the feet's circle, m.
+        head_radius: of the heads', m.
+        below: how far below the middle the heads are, m.
+    """
     feet, heads = np.zeros((6, 3)), np.zeros((6, 3))
     for i in range(6):
         third, side = i // 2, 1.0 if i % 2 else -1.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from armland.models.hexapod import attitude, joints_of, leg_rates, legs, pose
+from armland.models.unaided.hexapod import attitude, joints_of, leg_rates, legs, pose
 
 MIDDLE = np.array([0.62, 0.0, 0.45])
 FEET, HEADS = joints_of(0.55, 0.35, 0.04)

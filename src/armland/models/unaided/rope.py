@@ -26,7 +26,17 @@ DAMPING_SHARE = 0.3
 
 @njit(cache=True)
 def pull_of(a: Array, va: Array, b: Array, vb: Array, rest: float, k: float, c: float) -> tuple[float, float, float]:
-    """Force (3), N, W, on the end `a` of a piece whose other end is `b`: m and m/s, W; `rest`, m, k, N/m, and c, N·s/m."""
+    """Force (3), N, W, on one end of a piece.
+
+    Args:
+        a: that end (3,), m, W.
+        va: its velocity (3,), m/s, W.
+        b: the other end (3,), m, W.
+        vb: its velocity (3,), m/s, W.
+        rest: length of the slack piece, m.
+        k: N/m.
+        c: N·s/m.
+    """
     d0, d1, d2 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     d = np.sqrt(d0 * d0 + d1 * d1 + d2 * d2)
     if d <= rest or d < 1e-9:

@@ -1,4 +1,4 @@
-"""Tunes a method to land on training seeds: `PYTHONPATH=src:tools python -m tune METHOD [CANDIDATES]`; prints the best settings.
+"""Tunes a method to land on training seeds: `PYTHONPATH=src:tools python -m tuning METHOD [CANDIDATES]`; prints the best settings.
 
 Each method is given the same number of candidates, seeds and conditions: calm, 6 m/s on ss1, 8 m/s on ss2 and on ss3.
 """
@@ -7,9 +7,9 @@ import sys
 import time
 
 from armland.experiments.methods.table import METHODS
-from armland.experiments.methods.tuning import draw, flown, near, tune
 from armland.scenario import load_scenario
 from armland.scenario.tables import update
+from tuning.search import draw, flown, near, tune
 
 CONDITIONS = ((0.0, "calm"), (6.0, "ss1"), (8.0, "ss2"), (8.0, "ss3"))
 SEEDS = tuple(range(5001, 5006))
@@ -72,7 +72,9 @@ def main() -> None:
     trials = tune(method, space, flights, SEEDS, draw(space, number, 1), BOUNDS, fly)
     box = near(space, trials[0].settings)
     print(f"first round, {count} flights: {trials[0]}", flush=True)
-    trials = sorted([trials[0], *tune(method, space, flights, SEEDS, draw(box, number, 2), BOUNDS, fly)], key=lambda t: t.cost)
+    trials = sorted(
+        [trials[0], *tune(method, space, flights, SEEDS, draw(box, number, 2), BOUNDS, fly)], key=lambda t: t.cost
+    )
     print(f"{name}: {count} flights of seeds {SEEDS[0]} to {SEEDS[-1]}, twice {number} candidates")
     for trial in trials[:5]:
         print(f"cost {trial.cost:.3f} over {trial.flights}: {trial.settings or 'as they stand'}")

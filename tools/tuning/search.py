@@ -7,7 +7,7 @@ promise on more.
 
 | symbol | name |
 |---|---|
-| c | cost of a flight: 0 where all criteria are kept; else 1, and its share of how far speed and tilt exceed their bounds; 3 if nothing stands |
+| c | cost of a flight: 0 where all criteria are kept; else 1 and how far speed and tilt exceed their bounds; 3 if nothing stands |
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -61,7 +61,10 @@ def draw(space: Space, number: int, seed: int) -> list[dict[str, float]]:
     """`number` settings of a Latin hypercube in the `space`, rounded to three digits; `seed` of the draw."""
     unit = qmc.LatinHypercube(len(space), rng=np.random.default_rng(seed)).random(number)
     return [
-        {path: float(f"{low + x * (high - low):.3g}") for x, (path, (low, high)) in zip(row, space.items(), strict=True)}
+        {
+            path: float(f"{low + x * (high - low):.3g}")
+            for x, (path, (low, high)) in zip(row, space.items(), strict=True)
+        }
         for row in unit
     ]
 
@@ -106,7 +109,7 @@ def tune(
     tried = list(settings)
     for one in tried:
         for path, value in one.items():
-            low, high = space[path] if path in space else (np.nan, np.nan)
+            low, high = space.get(path, (np.nan, np.nan))
             if not low <= value <= high:
                 raise ConfigurationError(f"{path} = {value:g} lies outside the space, {low:g} to {high:g}")
     few = seeds[: max(round(FIRST_SHARE * len(seeds)), 1)]
@@ -115,7 +118,9 @@ def tune(
     rest = seeds[len(few) :]
     if not rest:
         return kept
-    return sorted((_further(t, _trial(method, t.settings, conditions, rest, bounds, fly)) for t in kept), key=lambda t: t.cost)
+    return sorted(
+        (_further(t, _trial(method, t.settings, conditions, rest, bounds, fly)) for t in kept), key=lambda t: t.cost
+    )
 
 
 def _trial(
