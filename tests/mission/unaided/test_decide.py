@@ -9,11 +9,14 @@ from armland.mission.unaided.plan import unaided_plan
 from armland.scenario import load_scenario
 
 
+PLAIN = {"quiet": 0.6, "cut_m": 0.01, "ready_m": 0.2, "sink_mps": 0.2, "patience_s": 15.0, "align_m": 0.1}
+
+
 class Bench:
     """The board of a UAV in `phase`, seen just now, on its station `height` above standing."""
 
     def __init__(self, phase, height, **descent):
-        plan = unaided_plan(load_scenario("unassisted", {"descent": descent}), "unassisted")
+        plan = unaided_plan(load_scenario("unassisted", {"descent": {**PLAIN, **descent}}), "unassisted")
         self.controller = UnaidedController(plan)
         self.board = self.controller.board
         self.m, self.e = self.board["tick"]["measurement"], self.board["tick"]["estimate"]
@@ -106,9 +109,22 @@ def test_rotors_stop_low_above_the_pad_and_a_second_later_it_is_done():
     assert bench.run(200) == DONE
 
 
+def test_one_that_sinks_no_more_has_touched_the_pad_whatever_its_height():
+    bench = Bench(DESCEND, 0.03)
+    bench.e["plate_v"][0, 2] = -0.01
+    assert bench.run(60) == DESCEND
+    assert bench.run(40) == SETTLE
+    sinks = Bench(DESCEND, 0.03)
+    sinks.e["plate_v"][0, 2] = -float(sinks.told["sink"][0])
+    assert sinks.run(100) == DESCEND
+    # High above the pad it may stand still.
+    high = Bench(DESCEND, 0.15)
+    assert high.run(100) == DESCEND
+
+
 def test_a_height_that_is_wrong_does_not_keep_the_rotors_running():
     bench = Bench(DESCEND, 0.03)
-    bench.kept["place"] = -0.85 * UNDER_M
+    bench.kept["place"], bench.e["plate_v"][0, 2] = -0.85 * UNDER_M, -0.2
     assert bench.run(100) == SETTLE
 
 

@@ -14,7 +14,8 @@ WINDY = {"air": {"wind_mps": 8.0, "turbulence": "by_wind"}}
 
 @pytest.fixture(scope="module")
 def calm():
-    return unaided_plan(load_scenario("unassisted"), "unassisted")
+    # Not with the settings of the method: those are tuned.
+    return unaided_plan(load_scenario("landing"), "unassisted")
 
 
 def test_criteria_are_those_of_the_arm_but_for_the_place(calm, landing_plan):

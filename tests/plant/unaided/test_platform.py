@@ -66,10 +66,14 @@ def test_legs_that_hardly_move_cancel_little():
     assert motion(stiff)[1][2000:].max() > 0.5 * motion(free)[1][2000:].max()
 
 
-def test_speed_of_the_platform_is_the_rate_of_its_place():
+def test_platform_moves_as_the_step_would_move_it():
+    # Speed at a tick is the way of the tick before, or each step would lead it elsewhere than the next tick puts it: contacts chatter.
     truth, _ = truths("hexapod", SS2, ticks=4000)
-    rate = np.diff(truth["deck"], axis=0) * 1000.0
-    np.testing.assert_allclose(rate[1000:], 0.5 * (truth["deck_v"][1000:-1] + truth["deck_v"][1001:]), atol=5e-3)
+    way = np.diff(truth["deck"], axis=0) * 1000.0
+    late = slice(1000, None)
+    behind, ahead = (np.abs(way[late] - v[late]).max() for v in (truth["deck_v"][1:], truth["deck_v"][:-1]))
+    assert behind < 1e-3
+    assert behind < ahead
 
 
 def test_on_land_there_is_no_platform():

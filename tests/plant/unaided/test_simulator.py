@@ -103,7 +103,7 @@ def test_faults_of_an_arm_are_refused():
 def test_timing_comes_down_at_a_quieter_moment():
     quiet, hasty = [], []
     for timed, out in ((True, quiet), (False, hasty)):
-        scenario = load_scenario("unassisted", {**SEA, "descent": {"timed": timed}})
+        scenario = load_scenario("unassisted", {**SEA, "descent": {"timed": timed, "quiet": 0.6}})
         for seed in range(501, 509):
             flight = fly_prepared(prepare(scenario, "unassisted", seed))
             phase = flight.ticks["mission"]["phase"]

@@ -35,6 +35,10 @@ UNSEEN_S = 0.4
 
 LOW_M = 0.06
 
+STOPPED, TOUCHED_S = 0.3, 0.08
+"""Share of the descent's speed, and time: one that sinks no faster for so long, low above the pad, has touched it, whatever its height
+is believed to be."""
+
 PRESSED_M = 0.03
 """Height, as it is believed, below which a UAV that a rope pulls down stands on the pad."""
 
@@ -70,12 +74,12 @@ def _next(b: Record) -> int:
     elapsed, height, seen = (b.tick.measurement.tick - s.begin) * p.tick_s, height_of(b), e.plate_age < UNSEEN_S
     aside = np.hypot(e.plate[0] - p.stand[0], e.plate[1] - p.stand[1])
     if s.phase == FIND:
-        if _holds(e.plate_valid == 1, b):
+        if _holds(e.plate_valid == 1, HELD_S, b):
             return GUIDE
         return AWAY if elapsed > p.find_s else FIND
     if s.phase == GUIDE:
         there = seen and aside < p.align and abs(height - p.wait) < p.align and _speed(b) < p.speed
-        return READY if _holds(there, b) or (seen and elapsed > GUIDE_S) else GUIDE
+        return READY if _holds(there, HELD_S, b) or (seen and elapsed > GUIDE_S) else GUIDE
     if s.phase == READY:
         if not seen and elapsed > UNSEEN_S:
             return GUIDE
@@ -85,7 +89,10 @@ def _next(b: Record) -> int:
     if s.phase == DESCEND:
         # Pulled down, it is pressed on the pad, and nothing is in haste: its height must be beyond doubt.
         pulled = p.pull > 0.0 and seen and height > PRESSED_M
-        if (height < p.cut and p.pull == 0.0) or (s.place < -0.9 * UNDER_M and not pulled):
+        stopped = height < LOW_M and e.plate_v[2] > -STOPPED * p.sink
+        if p.pull == 0.0 and (height < p.cut or _holds(stopped, TOUCHED_S, b)):
+            return SETTLE
+        if s.place < -0.9 * UNDER_M and not pulled:
             return SETTLE
         if height > LOW_M and (aside > p.give_up or not seen):
             s.retries += 1
@@ -96,14 +103,14 @@ def _next(b: Record) -> int:
 
 
 @njit(cache=True)
-def _holds(met: bool, b: Record) -> bool:
+def _holds(met: bool, for_s: float, b: Record) -> bool:
     s, tick = b.kept.descent, b.tick.measurement.tick
     if not met:
         s.since = -1
         return False
     if s.since < 0:
         s.since = tick
-    return bool((tick - s.since) * b.told.descent.tick_s >= HELD_S)
+    return bool((tick - s.since) * b.told.descent.tick_s >= for_s)
 
 
 @njit(cache=True)

@@ -3,7 +3,7 @@
 | symbol | name | unit |
 |---|---|---|
 | l, l̇ | `length`, `speed` (6,) of the legs | m, m/s |
-| x | `pose` (3, 6): now, and the two ticks after | m, rad |
+| x | `pose` (3, 6): of the tick before, of this one, of the next | m, rad |
 
 Speeds and accelerations of the scene's joints are the differences that lead from pose to pose, as the deck's are.
 """
@@ -130,7 +130,7 @@ def compensate(
     for i in range(6):
         p.pose[0, i], p.pose[1, i], p.pose[2, i] = p.pose[1, i], p.pose[2, i], coming[i]
         now, after = (p.pose[1, i] - p.pose[0, i]) / tick_s, (p.pose[2, i] - p.pose[1, i]) / tick_s
-        out[i], out[6 + i], out[12 + i] = p.pose[0, i], now, (after - now) / tick_s
+        out[i], out[6 + i], out[12 + i] = p.pose[1, i], now, (after - now) / tick_s
     deck.move(p.joints, out, qpos, qvel, applied, bias)
 
 
