@@ -8,7 +8,6 @@ from armland.mission.unaided.decide import AWAY, DESCEND, DONE, FIND, GUIDE, REA
 from armland.mission.unaided.plan import unaided_plan
 from armland.scenario import load_scenario
 
-
 PLAIN = {"quiet": 0.6, "cut_m": 0.01, "ready_m": 0.2, "sink_mps": 0.2, "patience_s": 15.0, "align_m": 0.1}
 
 
