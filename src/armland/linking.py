@@ -54,8 +54,8 @@ def named(name: str, joints: int) -> Any:
     return record(LAYOUTS[name](joints))
 
 
-NAMES = {tuple(field.name for field in fields): name for name, fields in MESSAGES.items()}
-"""Messages by their fields."""
+NAMES = {frozenset(field.name for field in fields): name for name, fields in MESSAGES.items()}
+"""Messages by their fields, whose order in Numba is another one where some have no elements."""
 
 
 class Head(_Intrinsic):  # type: ignore[misc]
@@ -81,7 +81,7 @@ class Head(_Intrinsic):  # type: ignore[misc]
 
 
 def _head(typing: Any, message: Any) -> Any:
-    (kind,) = heads(NAMES[tuple(message.fields)])
+    (kind,) = heads(NAMES[frozenset(message.fields)])
 
     def build(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         return builder.bitcast(values[0], context.get_value_type(kind))

@@ -165,6 +165,7 @@ def test_every_section_is_hardware_or_the_plants_own_or_the_controllers() -> Non
         "control",
         "estimation",
         "place",
+        "descent",
         "bounds",
         "limits",
         "trajectory",

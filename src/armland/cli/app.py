@@ -7,6 +7,7 @@ import typer
 from armland import __version__
 from armland.cli.commands.arm import arm
 from armland.cli.commands.campaign import app as campaign
+from armland.cli.commands.compare import compare
 from armland.cli.commands.detector import detector
 from armland.cli.commands.doctor import doctor
 from armland.cli.commands.gains import gains
@@ -77,6 +78,7 @@ for command in (
     reach,
     verify,
     gains,
+    compare,
     envelope,
     margins,
     takeoff_weight,

@@ -15,11 +15,14 @@ from armland.experiments.judge.judgement import Judgement, check_kind, judge
 from armland.experiments.placing import mounted_further, placed
 from armland.mission.controller import Controller
 from armland.mission.plan import Plan, plan
-from armland.mission.registry import mission_named
+from armland.mission.registry import UNAIDED, mission_named
 from armland.mission.tuning import fitted
+from armland.mission.unaided.controller import UnaidedController
+from armland.mission.unaided.plan import unaided_plan
 from armland.models.airframe.sizing import sized
 from armland.plant.simulator import Simulator
 from armland.plant.start import check_start
+from armland.plant.unaided.simulator import PadSimulator
 from armland.plant.wind.limits import check_wind
 from armland.runtime import loops
 from armland.runtime.log import Log
@@ -89,6 +92,9 @@ def prepare(
     if seed is not None:
         scenario = scenario.with_seed(seed)
 
+    if mission in UNAIDED:
+        return unaided(scenario if scenario.sized else sized(scenario), mission, known)
+
     def make(one: Scenario) -> Flight:
         if known is not None:
             return _simulated(one, known.again(one.run.seed))
@@ -128,6 +134,20 @@ def _simulated(scenario: Scenario, made: Plan) -> Flight:
     if made.mission.start == "air":
         check_start(scenario, simulator.scene, made.home)
     return Flight(scenario, made, simulator, Controller(made), metadata_of(scenario, made, simulator.scene))
+
+
+def unaided(scenario: Scenario, mission: str, known: Any = None) -> Flight:
+    """The flight of a mission without an arm; `known` as for `prepare`.
+
+    Raises:
+        ConfigurationError: what is refused, with the value and its bound.
+    """
+    made: Any = unaided_plan(scenario, mission) if known is None else known.again(scenario.run.seed)
+    check_kind(made.mission)
+    simulator = PadSimulator(scenario, made)
+    check_wind(scenario, simulator.scene.uav_mass, simulator.timed_wind)
+    controller: Any = UnaidedController(made)
+    return Flight(scenario, made, simulator, controller, metadata_of(scenario, made, simulator.scene))
 
 
 def fly(

@@ -210,10 +210,26 @@ def _refer(p: Records, t: Telling) -> None:
 
 
 def _uav(p: Records, t: Telling) -> None:
-    s, c = t.scenario, t.scenario.control
-    station, thrust = c.station, c.thrust
-    p["tick_s"], p["mass"], p["weight"], p["gravity"] = t.tick_s, t.flyer.mass, t.flyer.weight, t.flyer.gravity
-    p["lever"], p["drag"], p["station"], p["heading"] = t.flyer.body.lever, s.uav.drag_nspm, _station(t), 0.0
+    tell_station(p, t.scenario, t.flyer, _station(t), RIDES_RAD_S)
+    if t.launch is not None:
+        p["launch"] = t.launch.velocity
+        if t.scenario.place.fly_on:
+            p["fly_on"], p["thrust_max"] = 1, lift_range(t.scenario)[1]
+
+
+def tell_station(p: Records, s: Scenario, flyer: Flyer, station: Array, rides: float) -> None:
+    """Fill `p` (1,) of `uav.told_layout`: what commanding a UAV is told, whoever lands it.
+
+    Args:
+        p: written.
+        s: believed scenario.
+        flyer: what flies.
+        station: (3,), m, D, of the pivot.
+        rides: rad/s, fastest motion of the deck with which it goes along.
+    """
+    c, k, thrust = s.control, s.control.station, s.control.thrust
+    p["tick_s"], p["mass"], p["weight"], p["gravity"] = 1.0 / s.run.rate_hz, flyer.mass, flyer.weight, flyer.gravity
+    p["lever"], p["drag"], p["station"], p["heading"] = flyer.body.lever, s.uav.drag_nspm, station, 0.0
     p["thrust_rate"], p["force_slack"], p["balance_rate"] = thrust.rate_nps, thrust.slack_n, thrust.balance_nps_per_n
     idle, full = lift_range(s)
     p["shortfall"] = s.limits.shortfall_n
@@ -222,24 +238,20 @@ def _uav(p: Records, t: Telling) -> None:
     p["lift_min"] = p["thrust_min"]
     if s.foretold_mps > 0.0 or s.foretold_deck:
         # A deck that falls away is followed no faster than can be braked when it comes back.
-        p["lift_min"] = np.maximum(p["thrust_min"], 2.0 * t.flyer.weight - p["thrust_max"])
-    if t.launch is not None:
-        p["launch"] = t.launch.velocity
-        if s.place.fly_on:
-            p["fly_on"], p["thrust_max"] = 1, full
-    p["period"], p["hover_s"] = s.run.rate_hz // station.rate_hz, station.hover_s
-    p["k_position"], p["k_velocity"], p["k_integral"] = station.k_position, station.k_velocity, station.k_integral
-    p["speed_max"], p["integral_max"] = station.speed_max_mps, station.integral_max_mps2
-    wind, drag = expected(s), s.uav.drag_nspm / t.flyer.mass
+        p["lift_min"] = np.maximum(p["thrust_min"], 2.0 * flyer.weight - p["thrust_max"])
+    p["period"], p["hover_s"] = s.run.rate_hz // k.rate_hz, k.hover_s
+    p["k_position"], p["k_velocity"], p["k_integral"] = k.k_position, k.k_velocity, k.k_integral
+    p["speed_max"], p["integral_max"] = k.speed_max_mps, k.integral_max_mps2
+    wind, drag = expected(s), s.uav.drag_nspm / flyer.mass
     p["reckoned"], p["fades"] = (FELT_S, FELT_S) if wind.mean > 0.0 else (RECKONED_S, SEEN_S)
     p["astray"] = ASTRAY_M if wind.mean > 0.0 else np.inf
     p["leant"] = max(LEANT_MPS2, drag * wind.gust(STRONGEST))
-    p["rides"], p["coming_max"], p["vertical"] = RIDES_RAD_S, COMING_MPS2, station.vertical
+    p["rides"], p["coming_max"], p["vertical"] = rides, COMING_MPS2, k.vertical
     # An attitude under kp and kd is late by kd/kp, whatever it turns; thrust by the rotors' lag.
     uplink, o = 1e-3 * s.link.uplink_delay_ms, s.onboard
     p["lags"] = uplink + np.array([o.kd_nms[0] / o.kp_nm[0], o.kd_nms[1] / o.kp_nm[1], s.rotors.time_constant_s])
-    p["tilt_max"], p["gust_share"], p["gust_max"] = station.tilt_max_rad, station.gust_share, station.gust_max_mps2
-    p["sight"] = view.told(s, t.flyer.body.lever, wind.lean(drag / t.flyer.gravity, GUST))
+    p["tilt_max"], p["gust_share"], p["gust_max"] = k.tilt_max_rad, k.gust_share, k.gust_max_mps2
+    p["sight"] = view.told(s, flyer.body.lever, wind.lean(drag / flyer.gravity, GUST))
 
 
 def _law(p: Records, t: Telling) -> None:

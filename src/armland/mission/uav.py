@@ -110,12 +110,12 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     p, s, what = b.told.act.uav, b.kept.act, row.uav
     c.uav_mode = MODES[row.link]
     learn_trim(b)
-    blind = _unseen(e, b.kept.estimate, p) and (what == STATION or (what == CRUISE and not p.fly_on))
+    blind = unseen(e, b.kept.estimate, p) and (what == STATION or (what == CRUISE and not p.fly_on))
     if what == AUTONOMOUS or blind:
         c.uav_mode = MODE_AUTONOMOUS
         s.thrust = s.hover
         _level(p, s)
-        if what == STATION or (row.seeks == 1 and p.sight.leans and _unseen(e, b.kept.estimate, p)):
+        if what == STATION or (row.seeks == 1 and p.sight.leans and unseen(e, b.kept.estimate, p)):
             seek(s.alone * p.tick_s, e, b.kept.estimate.seen == 1, p, s)
     elif what == STATION:
         keep_shortfall(p, s)
@@ -144,20 +144,27 @@ def command_uav(row: Record, align: Array, b: Record) -> None:
     s.alone = s.alone + 1 if c.uav_mode == MODE_AUTONOMOUS else 0
     s.sought = s.sought if s.alone > 0 else 0
     # What is kept on the deck must turn with it; where the thrust of one that flies points to is decided in W.
-    _send(_to_own(align, what not in (STATION, CRUISE), p, b.environment, s.ride), s, c)
+    send(to_own(align, what not in (STATION, CRUISE), p, b.environment, s.ride), s, c)
 
 
 @njit(cache=True)
-def _unseen(e: Record, known: Record, p: Record) -> bool:
-    # Too long, or reckoned too badly since, to be guided.
+def unseen(e: Record, known: Record, p: Record) -> bool:
+    """Whether a UAV has not been seen for too long, or reckoned too badly since, to be guided.
+
+    Args:
+        e: estimate.
+        known: what the estimate keeps.
+        p: what commanding the UAV is told.
+    """
     sigma = known.plate.sigma_position
     return bool(known.seen == 0 or e.plate_age > p.reckoned or max(sigma[0], sigma[1], sigma[2]) > p.astray)
 
 
 @njit(cache=True)
-def _to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Record) -> Array:
-    # From the deck, as it will be for one that `stands` on it, into the UAV's own idea of the inertial frame, in which it holds its
-    # attitude.
+def to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Record) -> Array:
+    """Rotation (4,), scalar first, from the deck, as it will be for one that `stands` on it, into the UAV's own idea of the inertial
+    frame, in which it holds its attitude; `align` (4,) is δ, `p`, `environment` and `ride` are those of the board.
+    """
     if environment.moves:
         level = deck_ahead(p.lags[0], environment, ride) if stands else environment.base_quat.copy()
         return multiply(level, conjugate(align))
@@ -165,8 +172,10 @@ def _to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Re
 
 
 @njit(cache=True)
-def _send(own: Array, s: Record, c: Record) -> None:
-    # Thrust, set-point and step as they travel: in the UAV's own idea of the world, to which `own` (4,) turns.
+def send(own: Array, s: Record, c: Record) -> None:
+    """Put thrust, set-point and step of `s` into the command `c` as they travel: in the UAV's own idea of the world, to which
+    `own` (4,) turns.
+    """
     quat, step = multiply(own, s.q_d), turned(matrix(own), s.step)
     for i in range(3):
         c.uav_step[i] = step[i] if s.sought else 0.0

@@ -45,6 +45,7 @@ class Simulator:
         start: where the UAV is at first.
         phases: names of the mission's phases, in the order of the numbers in `tick.mission`; faults are armed by them.
         photographer: looks at real pictures in place of the camera's measurement model; then only the Python loop works.
+        scene: another one than that of the scenario's arm.
 
     Raises:
         ConfigurationError: a scenario that cannot be simulated, or faults of the camera that cannot act on pictures.
@@ -58,10 +59,11 @@ class Simulator:
         start: Start,
         phases: tuple[str, ...] = (),
         photographer: Photographer | None = None,
+        scene: Scene | None = None,
     ) -> None:
         self.scenario, self.start = scenario, start
-        self.scene: Scene = build_scene(scenario, "hinged" if start == "hinged" else "free")
-        link(self.scene.joints)
+        self.scene: Scene = scene or build_scene(scenario, "hinged" if start == "hinged" else "free")
+        self._link()
         self.data = mujoco.MjData(self.scene.model)
         self.drawn = draw(scenario, start)
         self.deviations: Values = {}
@@ -77,6 +79,9 @@ class Simulator:
         if self._pictures is not None:
             faults.refuse_detected(scenario)
             see_all(self.world["told"]["camera"])
+
+    def _link(self) -> None:
+        link(self.scene.joints)
 
     def _deviate(self) -> None:
         # A UAV that is hinged on the arm has been calibrated there.
@@ -126,7 +131,7 @@ class Simulator:
         told, kept, views = self.world["told"], self.world["kept"], self.views
         kept[:] = np.zeros_like(kept)
         faults.reset(kept["faults"], told["faults"])
-        _release(told["brake"], kept["brake"], views.dof_frictionloss, views.dof_solimp)
+        brake.switch(told["brake"][0], kept["brake"][0], views.dof_frictionloss, views.dof_solimp)
         link = kept["link"]
         link["up"]["sent"], link["down"]["sent"], link["received"], link["arrived"]["sent"] = -1, -1, -1, -1
         link["arrived"]["quat"] = [1.0, 0.0, 0.0, 0.0]
@@ -292,7 +297,3 @@ def _actuate(k: int, world: Records, views: Views, noise: Noise, phase: int, com
 def _mean(gain: Array) -> float:
     # Added in pairs.
     return float(np.append(gain, np.zeros(len(gain) % 2)).reshape(-1, 2).sum(axis=1).sum()) / len(gain)
-
-
-def _release(told: Records, kept: Records, frictionloss: Array, solimp: Array) -> None:
-    brake.switch(told[0], kept[0], frictionloss, solimp)

@@ -22,8 +22,9 @@ def told_layout(joints: int) -> np.dtype:
 
 def tell(told: Records, scene: Scene) -> None:
     """Fill `told` (1,)."""
-    first = scene.model.joint(int(scene.model.dof_jntid[scene.joint_dof[0]])).name
-    told["q"], told["tau"] = scene.sensor[f"q_{first}"], scene.sensor[f"tau_{first}"]
+    if scene.joints:
+        first = scene.model.joint(int(scene.model.dof_jntid[scene.joint_dof[0]])).name
+        told["q"], told["tau"] = scene.sensor[f"q_{first}"], scene.sensor[f"tau_{first}"]
     for name in SENSORS:
         told[name] = scene.sensor[name]
     told["gravity"] = scene.model.opt.gravity

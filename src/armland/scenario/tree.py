@@ -20,6 +20,7 @@ from armland.scenario.refusal import problems, refusal
 from armland.scenario.sensing import Camera, Imperfections, MotionReference, Sensors
 from armland.scenario.tables import as_json, leaves, orderly, update
 from armland.scenario.uav import Link, Onboard, Rotors, Uav
+from armland.scenario.unaided.landing import Descent, Hexapod, Pad, Tether
 
 HARDWARE = (
     "arm",
@@ -29,6 +30,9 @@ HARDWARE = (
     "magnet",
     "skids",
     "cradle",
+    "pad",
+    "hexapod",
+    "tether",
     "camera",
     "uav",
     "rotors",
@@ -71,6 +75,9 @@ class Scenario(Section):
     magnet: Magnet = Magnet()
     skids: Skids = Skids()
     cradle: Cradle = Cradle()
+    pad: Pad = Pad()
+    hexapod: Hexapod = Hexapod()
+    tether: Tether = Tether()
     camera: Camera = Camera()
     uav: Uav = Uav()
     rotors: Rotors = Rotors()
@@ -88,6 +95,7 @@ class Scenario(Section):
     control: Control = Control()
     estimation: Estimation = Estimation()
     place: Place = Place()
+    descent: Descent = Descent()
     bounds: Bounds = Bounds()
     limits: Limits = Limits()
     trajectory: Trajectory | None = key(None, "path of the missions that follow one")

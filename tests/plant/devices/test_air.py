@@ -245,10 +245,14 @@ def test_gain_far_from_the_ground_is_none():
     assert gain(100.0 * R, R) < 1e-5
 
 
-@pytest.mark.parametrize(("share", "rails"), [(1.0, -np.inf), (0.5, -np.inf), (1.0, 0.3)])
-def test_ground_and_rails_lift_by_their_shares(air, share, rails):
-    air[0]["ground"], air[0]["rails"], air[3]["r_cm"] = share, rails, [0.0, 0.0, 0.3 + R]
-    wanted = 1.0 + share * (gain(0.3 + R, R) + (OVER_RAILS / 15.0 if np.isfinite(rails) else 0.0))
+@pytest.mark.parametrize(
+    ("share", "rails", "over"), [(1.0, -np.inf, 0.0), (0.5, -np.inf, 0.0), (1.0, 0.3, OVER_RAILS), (1.0, 0.3, 1.0)]
+)
+def test_ground_and_what_stands_on_it_lift_by_their_shares(air, share, rails, over):
+    """Of rails a share of the discs counts, of a pad the whole."""
+    told, height = air[0], 0.3 + R
+    told["ground"], told["rails"], told["over"], air[3]["r_cm"] = share, rails, over, [0.0, 0.0, height]
+    wanted = 1.0 + share * (gain(height, R) + over / 15.0)
     assert step(air)["lift"][0] == pytest.approx(wanted, rel=1e-12)
 
 

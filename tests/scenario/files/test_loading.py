@@ -312,7 +312,7 @@ def test_file_that_may_not_be_read_is_refused(tmp_path) -> None:
 @pytest.mark.parametrize("path", ["x" * 5000, "a\0b", "a/" * 3000])
 def test_path_that_no_file_can_have_is_refused(path) -> None:
     message = refusal(path)
-    assert "does not exist; those that come with armland are: compare, landing, paper" in message
+    assert "does not exist; those that come with armland are: arm-paper, compare, hexapod, landing, paper" in message
     assert len(message) < 400
 
 

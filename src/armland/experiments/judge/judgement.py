@@ -64,6 +64,7 @@ KINDS = {
         (Criterion("touching", 0.0, "pads", "not let go"),),
     ),
     "kept": Kind("standing", {"capture": "", "touchdown": "the UAV never stood on the cradle", "rest": ""}),
+    "unaided": Kind("standing", {"touchdown": "the UAV never stood on the pad", "rest": ""}),
     "takeoff": Kind("flying", {"release": "the magnet never let go of a flying UAV", "steady": ""}),
     "path": Kind("held", {"tracking": ""}),
 }
@@ -126,7 +127,7 @@ def judge(ticks: Ticks, brief: Brief) -> Judgement:
         retries=int(ticks["mission"]["retries"][-1]),
         figures=figures,
         hinge_force_max_n=float(np.linalg.norm(truth["hinge_force"], axis=1).max()),
-        joint_torque_max_ratio=float((np.abs(truth["tau"]) / tau_max).max()),
+        joint_torque_max_ratio=float((np.abs(truth["tau"]) / tau_max).max(initial=0.0)),
         **held_figures(ticks, brief),
         limits_violated=list(violated),
     )

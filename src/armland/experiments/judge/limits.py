@@ -94,7 +94,7 @@ def _states(ticks: Ticks, brief: Brief) -> dict[str, Excess]:
         "joint_position": Excess(((q < least["q_min"]) | (q > most["q_max"])).any(axis=1)),
         "joint_speed": Excess((np.abs(qd) > most["qd_max"]).any(axis=1)),
         "joint_torque": Excess((np.abs(truth["tau"]) > most["tau_max"] * (1.0 + 1e-9)).any(axis=1)),
-        "torque_rate": Excess((rate > most["torque_rate"] * 1.001).any(axis=1), rate.max(axis=1), "N·m/s"),
+        "torque_rate": Excess((rate > most["torque_rate"] * 1.001).any(axis=1), rate.max(axis=1, initial=0.0), "N·m/s"),
         "singularity": Excess(singular),
         "hinge_force": Excess(force > most["hinge_max"], force, "N"),
     }

@@ -18,7 +18,8 @@ def deviate_bodies(values: Values, scenario: Scenario, scene: Scene) -> Scene:
     """Write the deviations into the scene's model; returns the scene with the place that its cradle now has."""
     model = scene.model
     _uav(values, model, scene.uav_body)
-    _arm(values, scenario, scene)
+    if scene.joints:
+        _arm(values, scenario, scene)
     _hinge(values, model, scene)
     shift = _cradle(values, model) if "cradle" in scene.parts else np.zeros(3)
     mujoco.mj_setConst(model, mujoco.MjData(model))

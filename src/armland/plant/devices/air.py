@@ -54,7 +54,8 @@ def told_layout(joints: int) -> np.dtype:
             ("hold", "f8"),
             ("ground", "f8"),  # e: share of the ground's effect
             ("radius", "f8"),
-            ("rails", "f8"),  # m, height of the rails; −∞ where there are none
+            ("rails", "f8"),  # m, height of rails or pad; −∞ where there are none
+            ("over", "f8"),  # share of the rotors' discs above them
             ("wash", "f8"),  # share of the thrust on the tool
             ("beside", "f8"),  # m, horizontal, of the farthest rotor's hub from the centre of mass
             ("blows", "i8"),  # whether `[air]` has any wind
@@ -86,7 +87,11 @@ def tell(told: Records, scenario: Scenario, scene: Scene) -> None:
     told["hold"] = np.exp(-1.0 / (scenario.run.rate_hz * CORRELATED_S))
     told["radius"] = scenario.rotors.radius_m
     told["beside"] = np.hypot(*rotor_set(scenario).place[:, :2].T).max()
-    told["rails"] = scene.model.body("cradle").pos[2] if "cradle" in scene.parts else -np.inf
+    told["rails"], told["over"] = -np.inf, OVER_RAILS
+    if "cradle" in scene.parts:
+        told["rails"] = scene.model.body("cradle").pos[2]
+    elif "pad" in scene.parts:
+        told["rails"], told["over"] = scene.model.body("pad").pos[2], 1.0
     if scenario.air.blows:
         tell_wind(told, scenario)
 
@@ -139,7 +144,7 @@ def blow(told: Record, kept: Record, faults: Record, given: tuple[Array, Array, 
             height += R[i, 2] * (t.r_cm[i] - t.deck[i])
         near = gain(height, told.radius)
         if np.isfinite(told.rails):
-            near += OVER_RAILS * gain(height - told.rails, told.radius)
+            near += told.over * gain(height - told.rails, told.radius)
         kept.lift += told.ground * near
 
 

@@ -37,6 +37,8 @@ def told_layout(joints: int) -> np.dtype:
 
 def tell(told: Records, scenario: Scenario, scene: Scene, noisy: bool) -> None:
     """Fill `told` (1,); `noisy` says whether there is white noise."""
+    if not scene.joints:
+        return
     first = scene.model.joint(int(scene.model.dof_jntid[scene.joint_dof[0]])).name
     told["at_q"], told["at_qd"] = scene.sensor[f"q_{first}"], scene.sensor[f"qd_{first}"]
     told["at_tau"] = scene.sensor[f"tau_{first}"]

@@ -42,6 +42,8 @@ def tell(told: Records, scene: Scene) -> None:
     limited = m.jnt_actfrclimited[joint].astype(bool)
     told["limit"] = np.where(limited, np.abs(m.jnt_actfrcrange[joint]).min(axis=1), np.inf)
     told["gain"] = 1.0
+    if not scene.joints:
+        return
     first = scene.model.joint(int(scene.model.dof_jntid[scene.joint_dof[0]])).name
     told["at_qd"] = scene.sensor[f"qd_{first}"]
 

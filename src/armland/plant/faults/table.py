@@ -12,7 +12,7 @@ from armland.plant.devices.camera_numbers import ERRORS, well
 from armland.plant.scene.composition import Scene
 from armland.records import MOST_ROTORS, Records
 from armland.scenario import Scenario
-from armland.scenario.faults import DEVICES, FAILURES, Fault
+from armland.scenario.faults import DEVICES, FAILURES, SHAPES, Fault
 
 MOST = 100
 """Most faults of a scenario."""
@@ -104,13 +104,20 @@ def tell(told: Records, scenario: Scenario, scene: Scene, phases: tuple[str, ...
 def _check(fault: Fault, scene: Scene, rotors: int, phases: tuple[str, ...]) -> None:
     if fault.phase is not None and fault.phase not in phases:
         raise ConfigurationError(f"faults: no phase {fault.phase!r}; the mission's phases are {', '.join(phases)}")
-    if fault.joint > scene.joints:
+    if not scene.joints and _on_arm(fault):
+        raise ConfigurationError(f"faults: {fault.kind} cannot act: the mission flies without an arm")
+    if fault.joint > max(scene.joints, 1):
         raise ConfigurationError(f"faults: joint {fault.joint} does not exist; the arm has joints 1 to {scene.joints}")
     if fault.kind == "rotor_loss" and fault.rotor > rotors:
         raise ConfigurationError(f"faults: rotor {fault.rotor} does not exist; the UAV has rotors 1 to {rotors}")
     needed = "camera" if fault.kind == "non_finite" and fault.device == "camera" else NEEDS.get(fault.kind)
     if needed is not None and needed not in scene.parts:
         raise ConfigurationError(f"faults: {fault.kind} cannot act: the mission flies without a {needed}")
+
+
+def _on_arm(fault: Fault) -> bool:
+    at_arm = fault.kind == "non_finite" and fault.device in ("encoders", "wrench")
+    return at_arm or "joint" in SHAPES[fault.kind].keys or fault.body == "elbow"
 
 
 def refuse_detected(scenario: Scenario) -> None:

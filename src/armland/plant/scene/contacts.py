@@ -33,10 +33,11 @@ def add_contacts(spec: mujoco.MjSpec, links: list[str]) -> None:
         for one in ones:
             for other in others:
                 if {one, other} <= here:
-                    _add_pair(spec, one, other, friction, one in skids and other in rails)
+                    add_pair(spec, one, other, friction, one in skids and other in rails)
 
 
-def _add_pair(spec: mujoco.MjSpec, one: str, other: str, friction: float, bears: bool) -> None:
+def add_pair(spec: mujoco.MjSpec, one: str, other: str, friction: float, bears: bool) -> None:
+    """Let the geoms `one` and `other` touch with `friction`, ratio; what `bears` lies on the other for good."""
     spec.add_pair(
         geomname1=one,
         geomname2=other,

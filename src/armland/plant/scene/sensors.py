@@ -42,6 +42,13 @@ def add_sensors(spec: mujoco.MjSpec, joints: list[str], free: bool, cradle: bool
     for prefix, kind in (("q", S.mjSENS_JOINTPOS), ("qd", S.mjSENS_JOINTVEL), ("tau", S.mjSENS_JOINTACTFRC)):
         for name in joints:
             spec.add_sensor(name=f"{prefix}_{name}", type=kind, objtype=O.mjOBJ_JOINT, objname=name)
+    add_frames(spec, free)
+    if free:
+        _add_contact_sensors(spec, spec.joint(joints[0]).parent, cradle, magnet)
+
+
+def add_frames(spec: mujoco.MjSpec, free: bool) -> None:
+    """Add the sensors of places, speeds, attitudes and forces of UAV, end effector and deck; `free`: of a UAV that has a plate."""
     cm, pivot, fts = f"{UAV}cm", f"{UAV}pivot", "armland_fts"
     for kind, places in (
         (S.mjSENS_FORCE, {"force": fts, "hinge_force": f"{UAV}hinge" if free else pivot}),
@@ -57,8 +64,6 @@ def add_sensors(spec: mujoco.MjSpec, joints: list[str], free: bool, cradle: bool
     if ground(spec) is not spec.worldbody:
         for name, kind in DECK_SENSORS.items():
             spec.add_sensor(name=name, type=kind, objtype=O.mjOBJ_XBODY, objname=DECK)
-    if free:
-        _add_contact_sensors(spec, spec.joint(joints[0]).parent, cradle, magnet)
 
 
 def _add_contact_sensors(spec: mujoco.MjSpec, arm: mujoco.MjsBody, cradle: bool, magnet: bool) -> None:

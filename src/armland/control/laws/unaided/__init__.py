@@ -1,0 +1,1 @@
+"""Laws of landings without an arm."""

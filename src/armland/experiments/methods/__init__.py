@@ -1,0 +1,1 @@
+"""Ways to land held against each other: which there are, and what comes of the same seeds."""

@@ -1,0 +1,1 @@
+"""Machines of landings without an arm: six legs, a rope."""

@@ -1,0 +1,1 @@
+"""The plant of landings without an arm: the same UAV, devices, wind and sea, over a pad."""

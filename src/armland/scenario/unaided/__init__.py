@@ -1,0 +1,1 @@
+"""Sections of landings without an arm."""

@@ -1,0 +1,1 @@
+"""Methods to land side by side, for the eye."""

@@ -1,0 +1,1 @@
+"""Search for settings of the methods to land."""
