@@ -51,7 +51,12 @@ def test_a_narrow_margin_is_exit_code_1_and_named(armland, monkeypatch, tmp_path
     text = " ".join(done.out.split())
     assert "uav.mass alone, inside its published range" in text
     assert "too fast (seed 2, high end; UAV lost)" in text
-    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["margins.json", "margins.pdf", "margins.png"]
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == [
+        "margins.json",
+        "margins.pdf",
+        "margins.png",
+        "report.html",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -204,7 +204,7 @@ BAD = {
         sets("uav.extra_mass_kg=0.5", "magnet.rating_n=5.0"),
         ["rotors give 7.44 N", "loaded with 3.0 N"],
     ),
-    "too heavy for the arm": (sets(*HEAVY), ["joint A2 would need 191 N·m", "0.9 of its limit is 158 N·m"]),
+    "too heavy for the arm": (sets(*HEAVY), ["joint A2 would need 193 N·m", "0.9 of its limit is 158 N·m"]),
     "two contradictions at once": (
         sets("bounds.lost_offset_m=0.001", "bounds.pull_seen_n=2.0"),
         ["2 problems", "lost_offset_m = 0.001", "pull_seen_n = 2"],

@@ -10,7 +10,7 @@ def test_table_says_values_and_sources(armland):
     done = armland("uav", "x500")
     assert done.code == 0
     text = " ".join(done.out.split())
-    for words in ("motorConstant", "needs a magnet rated", "hover takes 0.61"):
+    for words in ("motorConstant", "needs a magnet rated", "hover takes 0.62"):
         assert words in text
 
 

@@ -6,6 +6,7 @@ import pytest
 from armland.control.laws.settings import row_of
 from armland.mission.belief import flyer
 from armland.mission.feasibility.launch import Launch
+from armland.mission.plan import plan
 from armland.mission.told import Telling, tell
 from armland.models.posture import UPRIGHT
 from armland.scenario import load_scenario
@@ -144,3 +145,25 @@ def test_slower_loop_counts_the_same_times_in_fewer_ticks(landing_plan):
     assert p["estimate"]["rotor_gain"][0] == pytest.approx(1.0 - np.exp(-0.05))
     assert p["estimate"]["joint_leap"][0] == pytest.approx(0.125)
     assert p["limit"]["tick_s"][0] == p["refer"]["tick_s"][0] == p["decide"]["tick_s"][0] == 0.0025
+
+
+@pytest.mark.parametrize(("wind", "moves"), [(8.0, False), (0.0, True), (0.0, False)])
+def test_uav_that_flies_in_rough_weather_is_asked_for_no_less_than_can_be_braked(wind, moves):
+    """What its largest thrust brakes, W − F_min, is no more than what it has beyond its weight, F_max − W."""
+    forecast = {"wind_mps": wind, "deck_moves": moves}
+    told = plan(load_scenario("landing", {"forecast": forecast}), "landing").told["act"]["uav"][0]
+    falls, brakes = told["weight"] - told["lift_min"], told["thrust_max"] - told["weight"]
+    if wind or moves:
+        assert falls == pytest.approx(brakes)
+        assert told["lift_min"] > told["thrust_min"]
+    else:
+        assert told["lift_min"] == told["thrust_min"]
+        assert falls > brakes
+
+
+def test_null_space_is_told_the_pose_of_the_approach(landing_scenario):
+    made = plan(landing_scenario, "landing")
+    np.testing.assert_array_equal(made.told["act"]["realisation"]["posture"][0], made.home)
+    assert made.told["act"]["realisation"]["posture_rate"][0] == 0.0
+    rough = plan(landing_scenario.replaced({"control": {"posture_rad_s": 5.0}}), "landing")
+    assert rough.told["act"]["realisation"]["posture_rate"][0] == 5.0

@@ -77,9 +77,7 @@ def told_layout() -> np.dtype:
             ("fly_on", "i8"),  # 1 where the UAV keeps it with all its thrust
             ("period", "i8"),  # ticks, of the station keeping
             ("hover_s", "f8"),  # s, time constant with which T_h follows it
-            ("k_position", "f8"),  # 1/s
-            ("k_velocity", "f8"),  # 1/s
-            ("k_integral", "f8"),  # 1/s²
+            *((f"k_{name}", "f8") for name in ("position", "velocity", "integral")),  # 1/s, 1/s, 1/s²
             ("vertical", "f8"),  # of the two upwards over sideways
             ("speed_max", "f8"),  # m/s
             ("integral_max", "f8"),  # m/s²

@@ -117,6 +117,7 @@ def test_hinge_of_a_uav_on_the_cradle_is_as_quiet_as_on_land(monkeypatch, settle
         monkeypatch.setattr(composition, "settle_solver", lambda model: None)
     sea = {"state": "ss2", "height_m": 0.01, "hull_m": 4.0, "towards_deg": 120.0}
     still = {"sea": sea, "bounds": {"force_free_n": 0.02}, "deviation": {"level": "published"}}
+    still["place"] = {"keep_hold": False}
     flight = prepare(load_scenario("landing", still), "landing", 401)
     ticks = fly_prepared(flight).ticks
     unload = np.flatnonzero(ticks["mission"]["phase"] == flight.brief.phases.index("unload"))[1000:]

@@ -9,6 +9,9 @@ from armland.mission.table.mission import At, Criterion, Mission
 from armland.mission.table.phases import Phase
 from armland.scenario import Scenario
 
+FLEES_S = 0.6
+"""In which the arm draws back after a miss in wind and above a deck, or as fast as it can."""
+
 TRIMMED_S = 0.05
 """For which a UAV that hovers by itself is listened to, at least."""
 
@@ -116,6 +119,8 @@ def _phases(scenario: Scenario) -> tuple[Phase, ...]:
     if windy:
         # What the rotors make of a command changes until the cradle is near.
         rest = [p._replace(observe=True) if p.name == "set_down" else p for p in rest]
+    # A UAV that air takes down comes after the arm that has missed it.
+    rest = [p._replace(duration_s=FLEES_S) if p.name == "miss" else p for p in rest]
     # As long as `limits.search_ms` and the guiding afterwards may take.
     looks = [p._replace(timeout_s=40.0) if windy and p.seeks else p for p in rest]
     wait_s = 40.0 if windy else 20.0
