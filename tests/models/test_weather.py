@@ -117,7 +117,7 @@ def test_uav_out_of_view_is_looked_for_until_a_gust_has_passed():
     scenario = sized(landing(8.0)).believed()
     more = 1e-3 * (weathered(scenario, mass_of(scenario)).limits.search_ms - scenario.limits.search_ms)
     along, *_ = lengths(HEIGHT_M)
-    assert more * expected(scenario).mean == pytest.approx(along, rel=0.01)
+    assert more * expected(scenario).mean == pytest.approx(2.0 * along, rel=0.01)
     assert sized(landing(8.0)).run.duration_s > landing(8.0).run.duration_s + 2.0 * more
     phases = {p.name: p for p in LANDING.phases(scenario)}
     assert min(phases[name].timeout_s for name in ("find", "guide", "miss")) > more + 8.0

@@ -9,6 +9,9 @@ from armland.mission.table.mission import At, Criterion, Mission
 from armland.mission.table.phases import Phase
 from armland.scenario import Scenario
 
+LOOKS_S = 60.0
+"""Longest wait in wind for a UAV that is out of view."""
+
 FLEES_S = 0.6
 """In which the arm draws back after a miss in wind and above a deck, or as fast as it can."""
 
@@ -122,8 +125,8 @@ def _phases(scenario: Scenario) -> tuple[Phase, ...]:
     # A UAV that air takes down comes after the arm that has missed it.
     rest = [p._replace(duration_s=FLEES_S) if p.name == "miss" else p for p in rest]
     # As long as `limits.search_ms` and the guiding afterwards may take.
-    looks = [p._replace(timeout_s=40.0) if windy and p.seeks else p for p in rest]
-    wait_s = 40.0 if windy else 20.0
+    looks = [p._replace(timeout_s=LOOKS_S) if windy and p.seeks else p for p in rest]
+    wait_s = LOOKS_S if windy else 20.0
     return (FIND._replace(timeout_s=wait_s), first._replace(uav="station", seeks=True, timeout_s=wait_s), *looks)
 
 

@@ -23,6 +23,9 @@ LIFT = 0.3
 MOST_CARRIED = 0.75
 """Largest share of the weight that the rotors carry meanwhile: the arm must feel that it holds the UAV."""
 
+LOOKS = 2.0
+"""For how many gusts a UAV that is out of view is looked for."""
+
 LONGEST_MS = 6e4
 """Longest search, which is the scenario's bound of it."""
 
@@ -67,9 +70,9 @@ def weathered(scenario: Scenario, mass: float, lands: bool = True) -> Scenario:
         "bounds.level_tilt_deg": 2.0 * scenario.bounds.level_tilt_deg,
         "control.thrust.carry_share": share,
         "bounds.share_touched": scenario.bounds.share_touched + share * LIFT * wind.sinking,
-        # A UAV that a gust has taken out of view comes back when the gust is over.
+        # A UAV that a gust has taken out of view comes back when the gust is over, or the next.
         # Weak wind has long gusts, and takes none out of view.
-        "limits.search_ms": min(scenario.limits.search_ms + 1e3 * LENGTH_M / wind.mean, LONGEST_MS),
+        "limits.search_ms": min(scenario.limits.search_ms + 1e3 * LOOKS * LENGTH_M / wind.mean, LONGEST_MS),
         "limits.unexplained_n": scenario.limits.unexplained_n + sinks,
         "limits.shortfall_n": scenario.limits.shortfall_n + GUST * sinks,
     }
