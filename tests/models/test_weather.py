@@ -172,3 +172,9 @@ def test_uav_that_is_kept_is_judged_without_being_let_go():
     assert judged(LANDING, rough, 5.0).judged_as == "kept"
     assert judged(LANDING, calm, 5.0).judged_as == "landing"
     assert judged(MISSIONS["takeoff"], rough, 5.0).judged_as == "takeoff"
+
+
+def test_pad_of_a_uav_that_lands_by_itself_stays_where_it_is():
+    pad = load_scenario("unassisted", {"air": {"wind_mps": 8.0}})
+    assert sized(pad).place.put_down_m == pad.place.put_down_m
+    assert sized(pad).place.catch_m == pad.place.catch_m

@@ -45,8 +45,11 @@ SPARE_RAD, MOST_RAD = 0.05, 0.52
 """Lean that is left to move the UAV while it holds against the strongest gust; largest that an autopilot of this kind is set to:
 AR.Drone, `euler_angle_max`."""
 
+USUAL = {"catch_m": (0.62, 0.0, 0.86), "put_down_m": (0.68, 0.0, 0.701)}
+"""Places of the landing by an arm, m, D, as its scenario has them."""
+
 ROOMY = {"catch_m": (0.56, 0.0, 0.93), "put_down_m": (0.70, 0.0, 0.60)}
-"""Places in wind and on a deck that moves, m, D: 0.33 m from catch to cradle and not 0.16, since air that sinks takes a UAV down by
+"""Those in wind and on a deck that moves: 0.33 m from catch to cradle and not 0.16, since air that sinks takes a UAV down by
 up to 0.25 m while its rotors give all that they can."""
 
 POSTURE_RAD_S = 6.0

@@ -16,7 +16,7 @@ import numpy as np
 from armland.models.airframe.file import foreign_of
 from armland.models.airframe.size import Size, size_of
 from armland.models.parameters import plate_mass, uav_parameters
-from armland.models.weather import ROOMY, started
+from armland.models.weather import ROOMY, USUAL, started
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 
@@ -197,7 +197,8 @@ def _outdoors(scenario: Scenario) -> dict[str, Any]:
     for key, value in started(scenario, mass).items():
         if not is_settled(scenario, key):
             update(out, nested(key, value))
-    if not any(is_settled(scenario, f"place.{key}") for key in ROOMY):
+    usual = all(getattr(scenario.place, key) == place for key, place in USUAL.items())
+    if usual and not any(is_settled(scenario, f"place.{key}") for key in ROOMY):
         update(out, {"place": {key: list(place) for key, place in ROOMY.items()}})
     return out
 
