@@ -48,7 +48,8 @@ def test_a_flight_is_started_watched_and_judged(console, wait_until) -> None:
     press(console, "times real time", "8")
     press(console, "flight", "start")
     assert wait_until(lambda: 'data-phase="carry"' in console._strip.content, SECONDS)
-    assert "set down" in console._gauges.content
+    # The strip is drawn before the gauges of the same tick.
+    assert wait_until(lambda: "set down" in console._gauges.content)
     assert "joint torque" in console._gauges.content
     uav = console._stage._frames[console._flight.flight.simulator.scene.uav_body]
     assert wait_until(lambda: "✓ landed" in console._status.content, SECONDS)
@@ -67,7 +68,7 @@ def test_a_fault_is_foreseen_thrown_in_and_its_outcome_told(console, wait_until)
     assert wait_until(lambda: len(console.page.control("phase").options) > 5, SECONDS)
     press(console, "phase", "approach")
     assert wait_until(lambda: "in approach the supervisor goes to abort" in console.controls.forecast.content)
-    assert "background:#E69F0088" in console.controls.table.content
+    assert wait_until(lambda: "background:#E69F0088" in console.controls.table.content)
     press(console, "throw it in", True)
     press(console, "times real time", "8")
     assert wait_until(lambda: "as the table says" in console.controls.outcomes.content, SECONDS)
