@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from armland.mission.decide import decide, enter, fill_signals, load_expected
+from armland.mission.decide import SPARE_S, decide, enter, fill_signals, load_expected
 from armland.mission.supervisor.table import FAULT
 from armland.mission.table.phases import SIGNAL
 from armland.rotations import from_rotation_vector, multiply
@@ -49,6 +49,28 @@ def test_signals_are_what_their_names_say(bench):
     }
     for name, value in expected.items():
         assert found[name] == pytest.approx(value), name
+
+
+def test_spare_thrust_is_what_gusts_have_left_lately_of_what_there_is_in_calm_air(bench):
+    told = bench.told["decide"]
+    most, weight, tick_s = told["watch"]["thrust_max"][0], told["weight"][0], told["tick_s"][0]
+    for asked, left in ((weight, 1.0), (most, 0.0), (0.5 * (most + weight), 0.5)):
+        bench.kept["decide"]["pushes"] = bench.kept["act"]["thrust"] = asked
+        assert signals(bench)["spare"] == pytest.approx(left)
+    bench.kept["decide"]["pushes"], bench.kept["act"]["thrust"] = weight, most
+    for _ in range(round(SPARE_S / tick_s)):
+        found = signals(bench)["spare"]
+    assert found == pytest.approx(np.exp(-1.0), abs=1e-3)
+
+
+def test_in_wind_the_uavs_error_is_that_to_where_it_was_asked_to_be(bench):
+    """Negative control: in calm air it is that to the station."""
+    station = bench.told["decide"]["station"][0]
+    bench.kept["act"]["asked"] = station + [0.0, 0.0, 0.4]
+    bench.e["plate"] = station + [0.0, 0.03, 0.4]
+    assert signals(bench)["uav_error"] == pytest.approx(np.hypot(0.4, 0.03))
+    bench.told["act"]["uav"]["sight"]["leans"] = 1
+    assert signals(bench)["uav_error"] == pytest.approx(0.03)
 
 
 def test_thrust_left_is_the_distance_to_the_ramps_end(bench):

@@ -103,6 +103,15 @@ def test_in_wind_a_uav_out_of_view_is_guided_for_as_long_as_it_is_known_where_it
     assert bench.c["uav_mode"][0] == getattr(UavMode, mode)
 
 
+@pytest.mark.parametrize(("leans", "fused", "mode"), [(1, 2, 0), (1, 3, 1), (0, 0, 1)])
+def test_in_wind_a_uav_is_guided_once_enough_images_fit_each_other(bench, leans, fused, mode):
+    """Of the first ones an outlier is believed, and speed and gust with it. In calm air one is enough."""
+    bench.told["act"]["uav"]["sight"]["leans"], bench.kept["estimate"]["seen"] = leans, 1
+    bench.kept["estimate"]["filter"]["fused"] = fused
+    ask(bench, "guide")
+    assert bench.tick.buffer["command"]["uav_mode"][0] == mode
+
+
 def test_uav_that_has_left_the_view_is_told_where_to_hover_in_its_own_axes(bench):
     """It believes a heading of 90 degrees less than it has: what lies along deck x lies along its own −y."""
     align = from_rotation_vector(np.array([0.0, 0.0, 0.5 * np.pi]))

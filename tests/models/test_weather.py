@@ -9,7 +9,16 @@ from armland.mission.missions.weather import MOST_CARRIED, judged, weathered
 from armland.mission.registry import MISSIONS
 from armland.models.airframe.sizing import sized
 from armland.models.parameters import plate_mass, rotor_set, uav_parameters
-from armland.models.weather import HEIGHT_M, MOST_RAD, POSTURE_RAD_S, expected, started, swayed
+from armland.models.weather import (
+    HEIGHT_M,
+    MOST_RAD,
+    POSTURE_RAD_S,
+    SPARE_RAD,
+    expected,
+    most_lean,
+    started,
+    swayed,
+)
 from armland.plant.wind.dryden import intensities, lengths
 from armland.plant.wind.profile import height_of_catch, speed_at
 from armland.scenario import load_scenario
@@ -165,6 +174,20 @@ def test_one_place_that_the_user_has_set_keeps_both_where_they_are(key):
     other = next(k for k in own if k != key)
     assert getattr(made, other) == getattr(usual, other)
     assert not made.keep_hold
+
+
+@pytest.mark.parametrize("w20", [2.0, 8.0, 14.0])
+def test_uav_may_lean_as_far_as_the_strongest_gust_asks_of_more_drag_than_believed(w20):
+    """No further than an autopilot is set to; it counts as out of control well beyond that, and its own hover leans as far."""
+    made = sized(landing(w20))
+    wind, slope = expected(made), made.uav.drag_nspm / (mass_of(made) * 9.81)
+    lean = most_lean(wind, slope)
+    gust = np.arctan(1.3 * slope * (wind.mean + 3.0 * wind.sigma))
+    assert lean == pytest.approx(min(gust + SPARE_RAD, MOST_RAD))
+    assert made.onboard.hover.tilt_max_rad == pytest.approx(max(0.4, lean))
+    told = weathered(made.believed(), mass_of(made))
+    assert told.control.station.tilt_max_rad >= lean
+    assert told.limits.tilt_deg >= np.rad2deg(lean) + 5.0
 
 
 def test_uav_that_is_kept_is_judged_without_being_let_go():

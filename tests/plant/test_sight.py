@@ -4,8 +4,9 @@ import mujoco
 import numpy as np
 import pytest
 
+from armland.experiments.episode import prepare
 from armland.plant.scene.eye import CAMERA, MARKER
-from armland.plant.sight import marker_pose, sight
+from armland.plant.sight import AZIMUTHS, clear_angles, marker_pose, sight
 from armland.rotations import matrix
 
 WORLD = """
@@ -52,3 +53,57 @@ def test_what_is_beyond_the_pictures_edge_is_not_seen():
     cut, _ = seen(x=0.1733)
     assert cut.seen == cut.in_picture == pytest.approx(10 / 21)
     assert cut.hidden_by == ()
+
+
+UAV_BODY = """
+<mujoco>
+  <worldbody>
+    <body name="uav">
+      <freejoint/>
+      <geom type="box" size=".2 .2 .01" pos="0 0 .05" mass="1"/>
+      <geom name="{marker}" type="box" size=".03 .03 .0005" pos="0 0 .0005" quat="0 1 0 0" group="2"/>
+      {more}
+    </body>
+    {beside}
+  </worldbody>
+</mujoco>
+"""
+
+
+def clear(more="", beside="", largest=60.0):
+    model = mujoco.MjModel.from_xml_string(UAV_BODY.format(marker=MARKER, more=more, beside=beside))
+    return np.rad2deg(clear_angles(model, 1, np.deg2rad(largest)))
+
+
+def test_marker_that_nothing_hides_is_seen_as_far_as_one_looks():
+    np.testing.assert_allclose(clear(), 60.0)
+
+
+def test_wall_hides_the_marker_from_behind_it_alone():
+    """A wall 0.12 m aside, from the marker's plane 0.1 m down: the face's edge, 0.09 m from it, is hidden from 42° on.
+
+    The marker's frame has x as the body and y against it, for its face looks down.
+    """
+    found = clear('<geom type="box" size=".001 .4 .05" pos=".12 0 -.05" group="1" mass="0"/>')
+    assert 37.5 <= found[0] <= 45.0
+    assert found[AZIMUTHS // 2] == pytest.approx(60.0)
+    aside = clear('<geom type="box" size=".4 .001 .05" pos="0 .12 -.05" group="1" mass="0"/>')
+    assert aside[3 * AZIMUTHS // 4] == pytest.approx(found[0])
+    assert aside[AZIMUTHS // 4] == pytest.approx(60.0)
+
+
+def test_what_is_not_of_the_uav_or_not_drawn_hides_nothing():
+    np.testing.assert_allclose(clear(beside='<geom type="box" size=".001 .4 .05" pos=".12 0 -.05" group="1"/>'), 60.0)
+    np.testing.assert_allclose(clear('<geom type="box" size=".001 .4 .05" pos=".12 0 -.05" group="3" mass="0"/>'), 60.0)
+
+
+def test_hull_that_is_drawn_below_its_marker_has_it_on_its_outside():
+    np.testing.assert_allclose(clear('<geom type="box" size=".1 .1 .05" pos="0 0 .02" group="1" mass="0"/>'), 60.0)
+
+
+def test_demonstrators_skids_hide_the_marker_across_them_and_not_along_them(landing_scenario):
+    simulator = prepare(landing_scenario, "landing", 1).simulator
+    found = np.rad2deg(clear_angles(simulator.scene.model, simulator.scene.uav_body, np.deg2rad(45.0)))
+    assert 25.0 <= found.min() <= 30.0
+    assert found.argmin() in (0, 1, AZIMUTHS - 1)
+    np.testing.assert_allclose(found[[AZIMUTHS // 4, 3 * AZIMUTHS // 4]], 45.0)

@@ -75,7 +75,10 @@ def kept_layout() -> np.dtype:
             ("alone", "i8"),  # ticks for which the UAV has been told to hover by itself
             ("step", "f8", (3,)),  # m, from where it began to do so to where it shall [D]
             ("lost", "f8", (3,)),  # m, pivot of a UAV that is looked for, as it was reckoned then [D]
+            ("begun", "f8"),  # s, for how long it had hovered by itself when that began
             ("sought", "i8"),  # 1 where it is looked for
+            ("asked", "f8", (3,)),  # m, where a UAV that leans is asked to be, less what it goes along aside [D]
+            ("above", "f8"),  # m, of which above its station
             ("trim", "f8", (3,)),  # m/s², that its own hover asks for beyond gravity [D]
             ("trimmed", "i8"),  # the sample of which that was learnt last; 0: none yet
             ("anchor", "f8", (3,)),  # m, where the centre of mass was when it began to fly on [D]

@@ -42,10 +42,16 @@ BALANCE, HELD = UAV.index("balance"), LINK.index("held")
     S_LEAN,
     S_IMAGE_OFFSET,
     S_IMAGE_GAP,
+    S_SPARE,
 ) = (SIGNAL[name] for name in SIGNALS)
 
 COIL_S = 0.15
 """Time after which a magnet that was switched on must carry its current."""
+
+SPARE_S = 0.5
+"""Time constant of the thrust that is asked for, of which it is said what it leaves."""
+
+LEAST_SPARE_N = 1e-3
 
 BIAS_BLOCKS = 3
 """Blocks of readings after which the force-torque sensor's bias is known."""
@@ -82,6 +88,7 @@ def kept_layout() -> np.dtype:
             ("held", "i8"),  # 1 where the UAV hangs on the arm, also in an end
             ("grip", "f8", (3,)),  # m, end effector where the magnet was switched off last [D]
             ("retreat", "f8"),  # m, from there
+            ("pushes", "f8"),  # N, thrust asked for, smoothed
             ("signals", "f8", (len(SIGNALS),)),
             ("held_for", "i8", (GUARDS,)),  # ticks for which each guard has held
             ("seen", seen_layout()),
@@ -131,8 +138,9 @@ def fill_signals(elapsed: float, b: Record) -> None:
     ride = b.kept.act.ride
     refer, act, out = b.kept.refer, b.kept.act, b.kept.decide.signals
     apart, speed, relative, arm, retreat, force = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    station = b.kept.act.asked if b.told.act.uav.sight.leans else p.station
     for i in range(3):
-        apart += (e.plate[i] - p.station[i] - ride.aside[i]) ** 2
+        apart += (e.plate[i] - station[i] - ride.aside[i]) ** 2
         speed += (e.plate_v[i] - ride.aside_v[i]) ** 2
         relative += (e.plate_v[i] - e.v[i]) ** 2
         arm += (refer.r[i] - e.r[i]) ** 2
@@ -154,6 +162,8 @@ def fill_signals(elapsed: float, b: Record) -> None:
     out[S_MAGNET_FAULT], out[S_ROTORS], out[S_LEAN] = m.magnet_fault, e.thrust, _lean(e.quat, act.q_d)
     shown = b.kept.estimate.grip
     out[S_IMAGE_OFFSET], out[S_IMAGE_GAP] = np.sqrt(shown[0] ** 2 + shown[1] ** 2), shown[2]
+    s.pushes += p.tick_s / SPARE_S * (act.thrust - s.pushes)
+    out[S_SPARE] = (p.watch.thrust_max - s.pushes) / max(p.watch.thrust_max - p.weight, LEAST_SPARE_N)
 
 
 @njit(cache=True)

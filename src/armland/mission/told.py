@@ -16,10 +16,12 @@ from armland.estimation.plate.layouts import FELT_S
 from armland.mission.belief import Flyer
 from armland.mission.board import board_layout
 from armland.mission.feasibility.launch import Launch
+from armland.mission.feasibility.pace import downwards
 from armland.mission.feasibility.path import room
 from armland.mission.feasibility.weight import hover_max
 from armland.mission.reference import view
 from armland.mission.reference.guided import SEEN_S
+from armland.mission.reference.moves import FLOOR_M
 from armland.mission.supervisor.faults import PLUNGES_MPS, SINKS_MPS
 from armland.mission.table.mission import Start
 from armland.mission.uav import LEANT_MPS2, RECKONED_S
@@ -58,6 +60,9 @@ that is soon."""
 
 FELT = 2.0
 """Of the strongest gust's acceleration: what the UAV's accelerometers may feel beyond the model. The arm pulls as hard."""
+
+FLEES_SHARE = 0.75
+"""Of the height at which the arm waits below the plate, how far it draws away from a plate that it has missed."""
 
 RIDES_RAD_S = 8.0
 """Of the deck's motion with which a UAV goes along: a hull's is slower, and faster is what no attitude of a UAV follows."""
@@ -185,11 +190,13 @@ def _decide(p: Records, t: Telling) -> None:
 
 
 def _refer(p: Records, t: Telling) -> None:
-    s, a, place = t.scenario, t.scenario.control.approach, t.scenario.place
+    s, a, place, limits = t.scenario, t.scenario.control.approach, t.scenario.place, t.scenario.limits
     p["tick_s"], p["standoff"], p["beyond"], p["depth"] = t.tick_s, place.standoff_m, a.beyond_m, place.withdraw_m
     p["targets"][0, : len(t.targets)] = t.targets
     p["track"], p["track_max"], p["coast"] = a.track_rad_s, a.track_max_mps2, a.coast_s
     p["lowest"] = min(place.catch_m[2] - place.wait_below_m, place.put_down_m[2] - place.search_m - place.withdraw_m)
+    p["flees"], p["floor"] = FLEES_SHARE * place.wait_below_m, place.catch_m[2] - place.wait_below_m - 0.25 * FLOOR_M
+    p["flees_mps"] = np.inf if t.home is None else downwards(t.arm, t.home, limits.joint_speed_share * t.speeds)
     p["lower"], p["search"] = a.lower_mps, place.search_m
     p["track_speed"], p["room"] = a.track_max_mps, room(s, t.start)
     p["give_way"], p["give_way_max"] = a.give_way_mpns, a.give_way_max_m
@@ -197,7 +204,7 @@ def _refer(p: Records, t: Telling) -> None:
         p["launch"], p["launch_s"], p["leave_s"] = t.launch.velocity, t.launch.run_up_s, t.launch.leave_s
         # A speed that has to be given up runs out no faster than it was gained.
         p["coast"] = max(a.coast_s, float(np.linalg.norm(t.launch.velocity)) / t.launch.acceleration)
-    b, limits, rate = p["balance"], s.limits, _fall_rate(t)
+    b, rate = p["balance"], _fall_rate(t)
     b["fall_rate"], b["gains"] = rate, balance_gains(rate) if np.isfinite(rate) else 0.0
     b["gravity"] = t.flyer.gravity
     b["push_max"], b["sway_max"] = limits.balance_push_mps2, limits.balance_reach_m

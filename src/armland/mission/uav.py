@@ -45,6 +45,10 @@ RECKONED_S = 0.5
 velocity stays below 0.3 m/s in a gust that ends meanwhile. Then it hovers by itself. Where wind is expected its accelerometers say
 when a gust ends, and it is reckoned for as long as the pose filter does."""
 
+AGREE = 3
+"""Images beyond the first that must fit each other before a UAV in wind is guided by them: speed and gust are not known from two, and
+of few an outlier is believed."""
+
 LEANT_MPS2 = 2.0
 """Largest horizontal acceleration that a UAV on the hinge holds against by leaning: 11 degrees; more where more wind is expected."""
 
@@ -155,7 +159,8 @@ def unseen(e: Record, known: Record, p: Record) -> bool:
         p: what commanding the UAV is told.
     """
     sigma = known.plate.sigma_position
-    return bool(known.seen == 0 or e.plate_age > p.reckoned or max(sigma[0], sigma[1], sigma[2]) > p.astray)
+    lost = known.seen == 0 or e.plate_age > p.reckoned or max(sigma[0], sigma[1], sigma[2]) > p.astray
+    return bool(lost or (p.sight.leans == 1 and known.filter.fused < AGREE))
 
 
 @njit(cache=True)

@@ -41,14 +41,17 @@ LONGEST_S = 300.0
 RISES_MPS, FOUND_S = 0.4, 0.5
 """Speed with which a hull in sea state 3 rises, mean of its highest third; time until a UAV that hovers in W is seen and guided."""
 
+DRAGS = 1.3
+"""Drag that a UAV may have over the believed one: of bluff bodies it is hardly known better."""
+
 SPARE_RAD, MOST_RAD = 0.05, 0.52
 """Lean that is left to move the UAV while it holds against the strongest gust; largest that an autopilot of this kind is set to:
 AR.Drone, `euler_angle_max`."""
 
-USUAL = {"catch_m": (0.62, 0.0, 0.86), "put_down_m": (0.68, 0.0, 0.701)}
+USUAL: dict[str, object] = {"catch_m": (0.62, 0.0, 0.86), "put_down_m": (0.68, 0.0, 0.701)}
 """Places of the landing by an arm, m, D, as its scenario has them."""
 
-ROOMY = {"catch_m": (0.56, 0.0, 0.93), "put_down_m": (0.70, 0.0, 0.60)}
+ROOMY: dict[str, object] = {"catch_m": (0.50, 0.0, 0.93), "put_down_m": (0.70, 0.0, 0.60), "wait_below_m": 0.20}
 """Those in wind and on a deck that moves: 0.33 m from catch to cradle and not 0.16, since air that sinks takes a UAV down by
 up to 0.25 m while its rotors give all that they can."""
 
@@ -101,7 +104,7 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
     if wind.mean <= 0.0:
         return {"place.start_above_m": above, **kept} if scenario.foretold_deck else {}
     rate = scenario.uav.drag_nspm / mass
-    lean = min(wind.lean(rate / g, STRONGEST) + SPARE_RAD, MOST_RAD)
+    lean = most_lean(wind, rate / g)
     down = GUST * rate * wind.sigma / (own.k_position * own.k_velocity + own.k_integral)
     # Recorded winds and decks last as long as they last.
     longer = 0.0 if scenario.air.trace or scenario.sea.trace else WAITS * LENGTH_M / wind.mean
@@ -112,6 +115,11 @@ def started(scenario: Scenario, mass: float) -> dict[str, float]:
         "onboard.hover.tilt_max_rad": max(own.tilt_max_rad, lean),
         **kept,
     }
+
+
+def most_lean(wind: Wind, slope: float) -> float:
+    """Largest lean, rad, that is asked of a UAV in a wind; `slope` is its drag over its weight, s/m, as it is believed."""
+    return min(wind.lean(DRAGS * slope, STRONGEST) + SPARE_RAD, MOST_RAD)
 
 
 def swayed(scenario: Scenario, mass: float) -> tuple[float, float]:

@@ -43,7 +43,14 @@ class Camera(Section):
     field_of_view_deg: tuple[View, View] = key((60.0, 48.0), "full angles in image x and y; common lens")
     depth_min_m: of.Length = key(0.05, "closest focus; assumption")
     depth_max_per_size: of.Factor = key(1.1 / 0.04, "ratio of the largest depth to the marker's size, family 36h11")
-    incidence_max_deg: of.Tilt = key(25.0, "largest angle of sight to the marker's normal")
+    incidence_max_deg: of.Tilt = key(
+        45.0,
+        "largest angle of sight to the marker's normal at which the detector errs no more than the model; docs/camera.md",
+    )
+    hidden_from_deg: of.Tilt = key(
+        25.0,
+        "angle from which on the UAV's own skids may hide the marker, as the controller believes; the plant finds it by rays",
+    )
     reference_m: tuple[of.Length, of.Length] = key((0.3, 1.0), "depths of the two published precisions")
     lateral_m: tuple[of.Length, of.Length] = key((0.4e-3, 0.7e-3), "rc_visard manual, at the two depths")
     depth_m: tuple[of.Length, of.Length] = key((0.9e-3, 3.3e-3), "likewise, along the optical axis")

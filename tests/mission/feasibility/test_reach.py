@@ -48,7 +48,7 @@ def test_phases_that_move_have_targets_and_the_others_the_catch(landing_plan):
     found = targets(landing_plan.mission, landing_plan.phases, landing_plan.scenario)
     place = landing_plan.scenario.place
     np.testing.assert_allclose(found[landing_plan.number("carry")], np.array(place.put_down_m) + [0, 0, place.above_m])
-    np.testing.assert_allclose(found[landing_plan.number("guide")], place.catch_m)
+    np.testing.assert_allclose(found[landing_plan.number("align")], place.catch_m)
 
 
 def test_arm_that_is_too_weak_for_the_weight_is_refused():

@@ -2,8 +2,12 @@
 
 import pytest
 
+from armland.mission.missions.landing import BLIND_S
 from armland.mission.registry import MISSIONS
 from armland.scenario import load_scenario
+
+BLIND = ("approach", "align")
+"""Phases in which the arm is near a UAV that must be in view."""
 
 
 @pytest.fixture(scope="module")
@@ -61,3 +65,35 @@ def test_arm_that_keeps_hold_neither_lets_go_nor_draws_back():
     assert "hinge_force" not in [c.signal for c in guard.conditions]
     done = found["done"]
     assert (done.magnet, done.arm, done.uav, done.final) == ("on", "hold", "off", True)
+
+
+def test_in_rough_weather_the_arm_comes_to_a_uav_that_has_thrust_to_spare_and_draws_away_at_once():
+    """In calm air it waits for no thrust, counts what it feels as a contact wherever the plate is reckoned, and goes back by a move."""
+    rough = load_scenario("landing", {"air": {"wind_mps": 8.0}, "sea": {"state": "ss2"}}).believed()
+    found, calm = (
+        {p.name: p for p in MISSIONS["landing"].phases(s)} for s in (rough, load_scenario("landing").believed())
+    )
+    for phases, differs in ((found, True), (calm, False)):
+        asks = {n: [c.signal for g in p.guards for c in g.conditions] for n, p in phases.items()}
+        assert ("spare" in asks["guide"]) == differs
+        assert ("relative_speed" in asks["approach"]) == differs
+        assert ("gap" in asks["close"]) == differs
+        assert (phases["miss"].arm, phases["guide"].arm) == (("flee", "move") if differs else ("move", "hold"))
+    blind = {
+        n: next(g for g in p.guards if g.conditions[0][:2] == ("uav_seen", "<")) for n, p in found.items() if n in BLIND
+    }
+    assert all(g.target == "miss" and g.hold_s == BLIND_S for g in blind.values())
+    assert found["capture"].timeout_s > calm["capture"].timeout_s
+    assert found["close"].duration_s < calm["close"].duration_s
+
+
+def test_every_phase_of_rough_weather_leads_to_the_goal_by_its_guards():
+    found = {
+        p.name: p for p in MISSIONS["landing"].phases(load_scenario("landing", {"air": {"wind_mps": 8.0}}).believed())
+    }
+    here, way = "find", []
+    while not found[here].final:
+        way.append(here)
+        here = next(g.target for g in found[here].guards if g.target not in ("miss", "abort"))
+    assert here == "done"
+    assert way == [n for n in found if n != "miss" and not found[n].final]

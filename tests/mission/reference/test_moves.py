@@ -6,6 +6,8 @@ import pytest
 from armland.mission.reference.moves import (
     BACK_OFF,
     CLOSE,
+    FLEE,
+    FLOOR_M,
     HOLD,
     JOIN,
     LAUNCH,
@@ -23,7 +25,7 @@ from armland.mission.reference.moves import (
 from armland.mission.reference.refer import kept_layout, told_layout
 from armland.records import layout
 
-ALL = [HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, LAUNCH, LEAVE, LOWER, NOD]
+ALL = [HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, LAUNCH, LEAVE, LOWER, NOD, FLEE]
 
 
 @pytest.fixture
@@ -32,6 +34,7 @@ def made():
     p, s = np.zeros(1, told_layout()), np.zeros(1, kept_layout())
     p["tick_s"], p["coast"], p["standoff"], p["beyond"], p["depth"] = 1e-3, 0.06, 0.03, 0.006, 0.06
     p["targets"][0, 1] = [0.7, 0.1, 0.8]
+    p["flees"], p["flees_mps"], p["floor"] = 0.15, np.inf, 0.4
     p["launch"], p["launch_s"], p["leave_s"] = [0.5, -0.2, 0.1], 0.6, 0.35
     p["give_way"], p["give_way_max"], p["lower"], p["search"] = 3e-3, 4e-3, 0.03, 0.015
     s["r0"], s["v0"] = [0.6, 0.0, 0.7], [0.05, -0.02, 0.1]
@@ -139,6 +142,51 @@ def test_closing_begins_at_the_standoff_and_ends_beyond_the_face(made):
     made[1]["pv"] = 0.0
     assert at(made, CLOSE, 0.0, 1.0)[0][2] == pytest.approx(0.83)
     assert at(made, CLOSE, 1.0, 1.0)[0][2] == pytest.approx(0.866)
+
+
+def test_arm_that_flees_goes_along_with_the_plate_and_down_from_it_and_then_to_where_it_waits(made):
+    """The gap that there was grows by the depth, and nothing slides over the arm while it is near, whatever the plate does."""
+    _, s, *_ = made
+    s["p"], s["pv"], s["pa"] = [0.62, 0.01, 0.86], [0.3, -0.2, 0.1], [0.5, 0.5, -0.5]
+    s["p0"], s["pv0"] = s["p"] - 0.7 * s["pv"] + 0.5 * 0.49 * s["pa"], s["pv"] - 0.7 * s["pa"]
+    s["v0"] = s["pv0"]
+    for t in (0.0, 0.2, 0.6, 1.5):
+        plate = s["p"][0] + (t - 0.7) * s["pv"][0] + 0.5 * (t - 0.7) ** 2 * s["pa"][0]
+        apart = plate - at(made, FLEE, t, 0.6)[0]
+        if t < 0.3:
+            np.testing.assert_allclose(apart[:2], (s["p0"] - s["r0"])[0, :2], atol=1e-12)
+    np.testing.assert_allclose(at(made, FLEE, t, 0.6)[0][:2], [0.7, 0.1], atol=1e-12)
+    assert apart[2] - (s["p0"] - s["r0"])[0, 2] == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize(("falls", "most"), [(0.0, 0.5), (0.3, 0.5), (0.3, 0.8)])
+def test_arm_that_flees_from_a_plate_that_comes_down_is_no_faster_than_its_joints_allow(made, falls, most):
+    """Negative control: without a bound it is faster."""
+    p, s, e, _ = made
+    s["pv"] = s["pv0"] = s["v0"] = [0.0, 0.0, -falls]
+    s["p0"] = s["p"] - 0.7 * s["pv"]
+    e["plate_v"] = s["pv"]
+    begin(FLEE, TRACK, False, e[0], s[0])
+    s["r0"], s["v0"], s["p0"] = [0.6, 0.0, 0.7], s["pv"], s["p"] - 0.7 * s["pv"]
+    p["floor"] = -9.0
+
+    def fastest():
+        return max(-at(made, FLEE, t, 0.3)[1][2] for t in np.linspace(0.0, 3.0, 301))
+
+    assert fastest() > most
+    p["flees_mps"] = most
+    assert fastest() <= most + 1e-3
+
+
+@pytest.mark.parametrize("falls", [-0.05, -0.3, -3.0])
+def test_arm_that_flees_comes_to_rest_where_it_may_go_no_lower(made, falls):
+    p, s, *_ = made
+    p["floor"], s["pv"], s["v0"], s["p0"] = 0.6, [0.0, 0.0, falls], 0.0, s["p"]
+    low = min(at(made, FLEE, t, 0.6)[0][2] for t in np.linspace(0.7, 5.0, 50))
+    assert 0.6 <= low < 0.6 + FLOOR_M
+    h, t = 1e-5, 0.75
+    ahead, here, behind = (at(made, FLEE, x, 0.6) for x in (t + h, t, t - h))
+    np.testing.assert_allclose((ahead[0] - behind[0]) / (2.0 * h), here[1], atol=1e-4)
 
 
 def test_backing_off_goes_down_by_the_depth(made):

@@ -3,7 +3,21 @@
 import numpy as np
 import pytest
 
-from armland.mission.reference.view import ABOVE_M, ASIDE_M, LEAN_DEG, PASSES_M, RISE_MPS, RISEN_S, in_view, seek
+from armland.cli.options import load
+from armland.mission.reference.view import (
+    ABOVE_M,
+    ASIDE_M,
+    HEAVES_M,
+    LEAN_DEG,
+    LOWERS_MPS,
+    PASSES_M,
+    RISE_MPS,
+    RISEN_S,
+    WAITS_ABOVE_M,
+    in_view,
+    seek,
+    told,
+)
 from armland.plant.devices.camera import visible
 from armland.plant.devices.camera_numbers import camera_told
 from armland.plant.scene.eye import MARKER_DOWN
@@ -94,14 +108,44 @@ def test_lost_uav_that_is_too_low_to_pass_the_arm_rises_first(below, drawn_back)
     np.testing.assert_allclose(step[:2], -0.2, atol=1e-12)
 
 
-def test_lost_uav_rises_until_the_camera_would_not_see_so_far_and_is_never_told_to_come_down(below):
+def test_lost_uav_rises_until_the_camera_would_not_see_so_far_and_comes_back_to_where_it_began(below):
+    """Where it was lost may be wrong; it is never told to come down below the first step, nor from above what is seen."""
     highest = below.told["act"]["uav"]["sight"]["highest"][0]
     plate = np.array(below.plan.scenario.place.catch_m)
-    first, later = look_for(below, plate)[2], look_for(below, plate, 1000)[2]
+    first, later = look_for(below, plate)[2], look_for(below, plate, alone_s=1.0)[2]
     assert later - first == pytest.approx(RISE_MPS)
-    assert plate[2] + look_for(below, plate, 20000)[2] == pytest.approx(highest)
+    top_s = (highest - plate[2] - first) / RISE_MPS
+    assert plate[2] + look_for(below, plate, alone_s=top_s)[2] == pytest.approx(highest)
+    assert look_for(below, plate, alone_s=2.0 * top_s - 1.0)[2] == pytest.approx(later)
+    steps = [look_for(below, plate, alone_s=t)[2] for t in np.arange(0.0, 60.0, 0.3)]
+    assert min(steps) == pytest.approx(first)
     below.kept["act"]["sought"] = 0
-    assert look_for(below, plate + [0.0, 0.0, 3.0], 1000)[2] == 0.0
+    assert look_for(below, plate + [0.0, 0.0, 3.0], alone_s=1.0)[2] == pytest.approx(0.0, abs=2e-3)
+
+
+@pytest.mark.parametrize(("sea", "higher"), [("0", 0.0), ("3", HEAVES_M)])
+def test_lost_uav_goes_higher_above_a_deck_that_heaves(sea, higher):
+    scenario = load("landing", {"sea": sea, "hull": 4.0})
+    assert told(scenario, np.array([0.0, 0.0, -0.1]))["lifts"] == pytest.approx(ABOVE_M + higher)
+
+
+def test_uav_waits_above_its_station_in_wind_and_comes_down_at_its_pace(below):
+    """Negative control: in calm air it is asked to be where it is caught from the first tick on."""
+    station, uav = np.array(below.plan.scenario.place.catch_m), below.told["act"]["uav"]
+    sight, samples = uav["sight"], 1.0 / (uav["period"][0] * uav["tick_s"][0])
+    assert asked(below, (0.0, 0.0))[2] == station[2]
+    sight["leans"], sight["above"], sight["level"] = 1, WAITS_ABOVE_M, 1.0
+    for _ in range(round(samples)):
+        before = asked(below, (0.0, 0.0))[2]
+    assert before == pytest.approx(station[2] + LOWERS_MPS)
+    for _ in range(round(2.0 * samples)):
+        waiting = asked(below, (0.0, 0.0))[2]
+    assert waiting == pytest.approx(station[2] + WAITS_ABOVE_M)
+    assert below.kept["act"]["asked"][0, 2] == waiting
+    assert waiting - asked(below, (0.0, 0.0), waits=False)[2] == pytest.approx(LOWERS_MPS / samples)
+    for _ in range(round(2.0 * samples)):
+        below_it = asked(below, (0.0, 0.0), waits=False)[2]
+    assert below_it == pytest.approx(station[2])
 
 
 def test_uav_that_was_never_seen_is_sent_nowhere(below):

@@ -191,6 +191,20 @@ def test_what_is_in_view(offset, tilt_deg, expected, incidence_deg):
     ) == expected
 
 
+@pytest.mark.parametrize(("azimuth_deg", "expected"), [(0.0, False), (8.0, False), (30.0, True), (180.0, True)])
+def test_marker_is_not_seen_from_where_its_own_uav_hides_it(azimuth_deg, expected):
+    """Hidden from 20° on in one direction of the marker's frame, and in those up to the next one beside it."""
+    p = camera_told(other(incidence_max_deg=60.0), 1000)
+    p["cos_clear"][0, 0] = np.cos(np.deg2rad(20.0))
+    facing = Rotation.from_quat(FACING, scalar_first=True)
+    for tilt_deg, seen in ((19.0, True), (30.0, expected)):
+        # The marker turned about an axis across the direction from which it is looked at then.
+        a = np.deg2rad(azimuth_deg)
+        turn = Rotation.from_rotvec(np.deg2rad(tilt_deg) * np.array([np.sin(a), -np.cos(a), 0.0]))
+        R = np.ascontiguousarray((facing * turn).as_matrix())
+        assert visible(np.array([0.0, 0.0, 0.5]), R, p[0]) == seen
+
+
 def test_dropouts_come_as_often_and_as_long_as_stated():
     lose, stay = 0.05, 0.6
     seen = watch(300_000, camera=other(lose=lose, stay_lost=stay))

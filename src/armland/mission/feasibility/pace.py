@@ -134,3 +134,15 @@ def joint_speeds(arm: ArmModel, velocity: Array) -> Array:
     """Joint speeds of least length (n,), rad/s, that move the end effector at `velocity` (3,), m/s, in the arm's present pose."""
     J = arm.jacobian
     return np.asarray(J.T @ np.linalg.solve(J @ J.T + 1e-9 * np.eye(6), np.append(velocity, np.zeros(3))))
+
+
+def downwards(arm: ArmModel, home: Array, speeds: Array) -> float:
+    """Speed, m/s, with which the end effector may go down where the arm waits, its joints turning at up to `SHARE` of `speeds`.
+
+    Args:
+        arm: the arm model (its state is overwritten).
+        home: where it waits (n,), rad.
+        speeds: at which the supervisor stops the arm (n,), rad/s.
+    """
+    arm.update(home, np.zeros(arm.joints))
+    return float(SHARE / np.max(np.abs(joint_speeds(arm, np.array([0.0, 0.0, -1.0]))) / speeds))

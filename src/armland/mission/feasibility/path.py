@@ -100,6 +100,9 @@ def room(scenario: Scenario, start: Start) -> Array:
         )
     low, high = catch - reach, catch + reach
     low[2] -= scenario.place.standoff_m
+    if scenario.foretold_mps > 0.0 or scenario.foretold_deck:
+        # Down to where it waits: a plate that air takes down is to be followed, not to be met.
+        low[2] = min(low[2], catch[2] - scenario.place.wait_below_m + scenario.place.standoff_m)
     for i in range(2):
         # Of a slot that stands askew the box takes what is inside for all of it.
         if abs(across[i]) > 1e-9:

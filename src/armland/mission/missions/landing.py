@@ -12,8 +12,28 @@ from armland.scenario import Scenario
 LOOKS_S = 60.0
 """Longest wait in wind for a UAV that is out of view."""
 
-FLEES_S = 0.6
-"""In which the arm draws back after a miss in wind and above a deck, or as fast as it can."""
+FLEES_S, WAITS_S, CLOSES_S = 0.6, 1.0, 0.6
+"""In wind and above a deck: in which the arm draws away from a plate that it has missed, goes back to where it waits, and closes; or as
+fast as it can. What is near for less time meets fewer gusts."""
+
+BLIND_S = 0.1
+"""Time without an image after which the arm draws away then."""
+
+PULLS_S = 5.0
+"""Longest wait for the pull test of a UAV that the magnet has gripped."""
+
+JOINS_S, JOINED_M = 6.0, 0.03
+"""Longest wait below a UAV that comes down to the arm, and gap beyond the one that the arm keeps at which it has come."""
+
+TOUCHED_M = 0.007
+"""Gap, as reckoned, up to which a force that is felt while the arm follows a UAV in gusts is that of a contact."""
+
+RUSHES_MPS, DROPS_MPS, RUSHES_S = 0.7, 0.35, 0.02
+"""Speed of the plate against the arm that comes to it, and against one that is right below it, at which the arm draws away; joining a
+UAV that comes down takes 0.5 m/s."""
+
+SPARE = 0.4
+"""Thrust that the rotors must have to spare before the arm comes, over what they have where nothing blows."""
 
 TRIMMED_S = 0.05
 """For which a UAV that hovers by itself is listened to, at least."""
@@ -105,6 +125,36 @@ HOLDS = {
 """What is done differently where the arm keeps hold of the UAV: wind and deck would push it along the rails. Nor does it wait for the
 hinge to be free of force: it would give way to the wind meanwhile, and drag the skids along."""
 
+_BY_NAME = {p.name: p for p in PHASES}
+
+ROUGH = {
+    "guide": _BY_NAME["guide"]
+    ._replace(arm="move", duration_s=WAITS_S, guards=())
+    .to(
+        "approach",
+        "progress > almost_one, uav_error < uav_error_m, uav_speed < uav_speed_mps, uav_seen > half, spare > spare_least",
+        0.2,
+    ),
+    "approach": _BY_NAME["approach"]
+    ._replace(timeout_s=JOINS_S, guards=())
+    .to("align", "progress > almost_one, uav_seen > half, gap < joined_m")
+    .to("miss", "uav_seen < half", BLIND_S)
+    .to("miss", "relative_speed > rushes_mps", RUSHES_S),
+    "align": _BY_NAME["align"]
+    ._replace(guards=_BY_NAME["align"].guards[:1])
+    .to("miss", "uav_seen < half", BLIND_S)
+    .to("miss", "relative_speed > drops_mps", RUSHES_S),
+    # What pushes the sensor while the arm follows a UAV in gusts is taken for a contact.
+    "close": _BY_NAME["close"]
+    ._replace(duration_s=CLOSES_S, guards=_BY_NAME["close"].guards[1:])
+    .to("capture", "contact > half, gap < touched_m"),
+    # A UAV on the magnet that gusts press down is held well; it takes longer until its rotors pull.
+    "capture": _BY_NAME["capture"]._replace(timeout_s=PULLS_S),
+    # A UAV that air takes down comes after the arm that has missed it.
+    "miss": _BY_NAME["miss"]._replace(arm="flee", duration_s=FLEES_S),
+}
+"""What is done differently in wind and above a deck that moves."""
+
 FIND = Phase(
     "find", kind="ground", arm="hold", uav="autonomous", free=True, seeks=True, timeout_s=20.0, on_timeout="refused"
 ).to("self_test", "uav_seen > half, elapsed > trimmed_s", 0.02)
@@ -122,8 +172,7 @@ def _phases(scenario: Scenario) -> tuple[Phase, ...]:
     if windy:
         # What the rotors make of a command changes until the cradle is near.
         rest = [p._replace(observe=True) if p.name == "set_down" else p for p in rest]
-    # A UAV that air takes down comes after the arm that has missed it.
-    rest = [p._replace(duration_s=FLEES_S) if p.name == "miss" else p for p in rest]
+    rest = [ROUGH.get(p.name, p) for p in rest]
     # As long as `limits.search_ms` and the guiding afterwards may take.
     looks = [p._replace(timeout_s=LOOKS_S) if windy and p.seeks else p for p in rest]
     wait_s = LOOKS_S if windy else 20.0
@@ -131,6 +180,7 @@ def _phases(scenario: Scenario) -> tuple[Phase, ...]:
 
 
 TARGETS = {
+    "guide": At("catch_m", -1.0, "wait_below_m"),
     "miss": At("catch_m", -1.0, "wait_below_m"),
     "carry": At("put_down_m", 1.0, "above_m"),
     # Above the highest place of the rails; from there it is lowered until they are felt.
@@ -140,6 +190,7 @@ TARGETS = {
 _WAITING = At("catch_m", -1.0, "wait_below_m")
 
 MOVES = {
+    "guide": (At("catch_m"), _WAITING),
     "approach": (_WAITING, At("catch_m", -1.0, "standoff_m")),
     "miss": (At("catch_m"), _WAITING),
     "carry": (At("catch_m"), TARGETS["carry"]),
@@ -164,7 +215,14 @@ LANDING = Mission(
     targets=TARGETS,
     moves=MOVES,
     # By then it has said what it asks of its rotors; a moment later it may be out of view again.
-    thresholds=lambda _: {"trimmed_s": ALONE_S + TRIMMED_S},
+    thresholds=lambda s: {
+        "trimmed_s": ALONE_S + TRIMMED_S,
+        "spare_least": SPARE,
+        "joined_m": s.place.standoff_m + JOINED_M,
+        "touched_m": TOUCHED_M,
+        "rushes_mps": RUSHES_MPS,
+        "drops_mps": DROPS_MPS,
+    },
     timeouts={
         "find": "the camera does not see the UAV: check marker and camera, and whether it hovers above the arm",
         "self_test": "not all was ready: check magnet, force sensor and camera",

@@ -7,12 +7,15 @@ import numpy as np
 from armland.mission.table.mission import Criterion, Mission
 from armland.models.airframe.sizing import at, is_settled, nested
 from armland.models.parameters import rotor_set, uav_parameters
-from armland.models.weather import GUST, LENGTH_M, MOST_RAD, SPARE_RAD, STRONGEST, Wind, expected, swayed
+from armland.models.weather import GUST, LENGTH_M, STRONGEST, Wind, expected, most_lean, swayed
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 
 STIFF = 1.5, 4.0, 2.0, 2.0
 """Gains of a station that is kept against gusts, 1/s, 1/s, 1/s², and those upwards over those sideways."""
+
+OUT_DEG = 10.0
+"""Beyond the largest lean that is asked for, from which on a UAV counts as out of control."""
 
 SPARE_DEG = 5.0
 """Between the lean at which the arm closes and the one at which the UAV counts as out of control."""
@@ -54,7 +57,8 @@ def weathered(scenario: Scenario, mass: float, lands: bool = True) -> Scenario:
     share = scenario.control.thrust.carry_share
     share = min(share + _upright(scenario, wind) / (mass * g), MOST_CARRIED) if lands else share
     wanted = {
-        "control.station.tilt_max_rad": min(strongest + SPARE_RAD, MOST_RAD),
+        "control.station.tilt_max_rad": most_lean(wind, rate / g),
+        "limits.tilt_deg": float(np.rad2deg(most_lean(wind, rate / g))) + OUT_DEG,
         "control.station.gust_max_mps2": rate * wind.gust(STRONGEST),
         "bounds.align_tilt_deg": min(float(np.rad2deg(strongest)), scenario.limits.tilt_deg - SPARE_DEG),
         "control.station.k_position": STIFF[0],

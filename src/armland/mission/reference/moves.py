@@ -6,6 +6,7 @@
 | r₀, v₀ | `kept.r0`, `.v0` (3,): the reference when the phase began | m, m/s, deck |
 | s(u) | septic from 0 to 1 | 1 |
 | p | `kept.p` (3,): the plate's pivot, smoothed by `track` | m, deck |
+| p₀ | `kept.p0` (3,): the same when the phase began | m, deck |
 
 No reference jumps: a velocity v₀ at the beginning of a phase decays with the time constant T = `coast`, s, as
 r₀ + v₀ T (1 − e^(−t/T)).
@@ -22,10 +23,18 @@ from armland.records import Record
 NOD_M = 0.006
 """How far the arm nods on each axis: enough to weigh a tool of 0.3 kg, a quarter of the room around it."""
 
+FLOOR_M = 0.05
+"""Height above its lowest place over which the arm that draws away from the plate comes to rest."""
+
+PEAK, LEAST_LEFT = 35.0 / 16.0, 0.3
+"""Largest speed of the septic over its mean; least share of the arm's speed with which it draws away from a plate."""
+
 LOWER_S = 0.3
 """Time in which a steady descent begins."""
 
-HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, BRAKE, LAUNCH, LEAVE, BALANCE, FOLLOW, LOWER, NOD = range(len(ARM))
+HOLD, JOIN, TRACK, CLOSE, MOVE, BACK_OFF, YIELD, BRAKE, LAUNCH, LEAVE, BALANCE, FOLLOW, LOWER, NOD, FLEE = range(
+    len(ARM)
+)
 
 
 @njit(cache=True)
@@ -52,6 +61,8 @@ def move(mode: int, elapsed: float, duration: float, phase: int, e: Record, p: R
         _to_plate(b, b_dot, b_ddot, p, s, r)
     elif mode == CLOSE:
         _close(u, T, p, s, r)
+    elif mode == FLEE:
+        _flee(elapsed, T, phase, p, s, r)
     elif mode == LAUNCH:
         _run_up(elapsed, p, s, r)
     elif mode == LEAVE:
@@ -85,6 +96,7 @@ def begin(mode: int, before: int, switched: bool, e: Record, s: Record) -> None:
         e: estimate.
         s: what the reference keeps, written.
     """
+    s.falls = max(-e.plate_v[2], 0.0)
     for i in range(3):
         s.r0[i], s.v0[i] = s.r[i], s.v[i]
         if mode == YIELD and before == YIELD:
@@ -93,6 +105,7 @@ def begin(mode: int, before: int, switched: bool, e: Record, s: Record) -> None:
             s.r0[i], s.v0[i], s.yielded[i] = e.r[i], 0.0, 0.0
         elif switched:
             s.r0[i], s.v0[i] = e.r[i], e.v[i]
+        s.p0[i], s.pv0[i] = s.p[i], s.pv[i]
 
 
 @njit(cache=True)
@@ -113,6 +126,33 @@ def _close(u: float, duration: float, p: Record, s: Record, r: Record) -> None:
         r.r[i] = s.p[i] - down * (p.standoff - b * reach)
         r.v[i] = s.pv[i] + down * b_dot * reach
         r.a[i] = s.pa[i] + down * b_ddot * reach
+
+
+@njit(cache=True)
+def _flee(elapsed: float, duration: float, phase: int, p: Record, s: Record, r: Record) -> None:
+    # At first along with the plate, so that it does not slide over the arm while that is near, and down from it; then to above where
+    # it waits, away from the rails; no lower than that.
+    # A plate that comes down leaves the arm less speed to get away from it.
+    left = max(p.flees_mps - s.falls, LEAST_LEFT * p.flees_mps)
+    lasts, fade = max(duration, PEAK * p.flees / left), np.exp(-elapsed / p.coast)
+    b, b_dot, b_ddot = septic((elapsed - 0.5 * duration) / duration, duration)
+    for i in range(3):
+        more = s.v0[i] - s.pv0[i]
+        r.r[i] = s.p[i] + s.r0[i] - s.p0[i] + more * p.coast * (1.0 - fade)
+        r.v[i] = s.pv[i] + more * fade
+        r.a[i] = s.pa[i] - more / p.coast * fade
+        if i < 2:
+            apart, v = p.targets[phase, i] - r.r[i], r.v[i]
+            r.r[i] += b * apart
+            r.v[i] += b_dot * apart - b * v
+            r.a[i] += b_ddot * apart - 2.0 * b_dot * v - b * r.a[i]
+    _lower(elapsed / lasts, lasts, p.flees, r)
+    over = r.r[2] - p.floor
+    if over < FLOOR_M:
+        share = max(over + FLOOR_M, 0.0) / (2.0 * FLOOR_M)
+        r.r[2] = p.floor + share * share * FLOOR_M
+        r.a[2] = share * r.a[2] + (r.v[2] ** 2 / (2.0 * FLOOR_M) if share > 0.0 else 0.0)
+        r.v[2] *= share
 
 
 @njit(cache=True)

@@ -33,6 +33,9 @@ def told_layout() -> np.dtype:
             ("standoff", "f8"),  # m
             ("beyond", "f8"),  # m, how far beyond the plate's face the arm would close
             ("depth", "f8"),  # m, that the arm backs off
+            ("flees", "f8"),  # m, that it draws away from below the plate
+            ("flees_mps", "f8"),  # m/s, largest speed downwards with which it does so
+            ("floor", "f8"),  # m, height of the end effector below which it then does not [D]
             ("lowest", "f8"),  # m, height of the end effector below which it does not [D]
             ("launch", "f8", (3,)),  # m/s, velocity that a take-off gives to the UAV [D]
             ("launch_s", "f8"),  # s, of the run-up, and of coming to rest
@@ -66,6 +69,9 @@ def kept_layout() -> np.dtype:
             ("p", "f8", (3,)),  # m, plate as tracked [D]
             ("pv", "f8", (3,)),
             ("pa", "f8", (3,)),
+            ("p0", "f8", (3,)),  # m, where that was when the phase began [D]
+            ("pv0", "f8", (3,)),
+            ("falls", "f8"),  # m/s, with which it came down then, wherever it was
             ("yielded", "f8", (3,)),  # m
             ("balance", balance_kept()),
         ]

@@ -14,7 +14,8 @@ waited for it keeps (z − `told.near`) tan φ n beside the camera's axis: then 
 the field of view or beyond its largest incidence equally late, and no way at all where it is caught.
 
 Lost, it is told to hover by its own means above the camera, by a step from where it was reckoned last: it rises, since the view
-widens with the height, and moves sideways once it is high enough to pass the arm. It is never told to come down.
+widens with the height, and moves sideways once it is high enough to pass the arm. Where it was reckoned
+may be wrong, so it comes back to that step, and rises again; it is never told to come down further.
 """
 
 from functools import lru_cache
@@ -39,11 +40,19 @@ UNSEEN_S = 0.3
 ABOVE_M = 0.4
 """Height above its station at which a UAV that is lost is looked for first: there the cone is twice as wide."""
 
+HEAVES_M = 0.3
+"""Beyond that above a deck: it hovers in W by itself, and a hull in sea state 3 heaves by as much, mean of its highest third."""
+
 RISE_MPS, DEEPEST = 0.1, 0.8
-"""Speed at which it rises further until it is found; share of the camera's largest depth beyond which it does not."""
+"""Speed at which it rises further, and comes back, until it is found; share of the camera's largest depth beyond which it does not."""
+
+LEAST_SPAN_M = 1e-3
 
 ASIDE_M = 0.4
 """Largest step sideways: no UAV that has just left the view is further from it."""
+
+WAITS_ABOVE_M, LOWERS_MPS = 0.4, 0.25
+"""Height above its station at which a UAV waits in wind, out of reach of the arm below should it sink; speed at which it comes down."""
 
 PASSES_M = 0.1
 """Height of the pivot above the end effector from which on the UAV passes above the arm, which draws back meanwhile."""
@@ -57,7 +66,9 @@ def told_layout() -> np.dtype:
     """What keeping in view is told."""
     # m, 1, m: highest pivot [D]; whether wind is expected; rad; m, height of the marker above the camera
     sight = [("line", "f8", (3,)), ("cone", "f8"), ("highest", "f8")]
-    return np.dtype([*sight, ("leans", "i8"), ("level", "f8"), ("near", "f8")])
+    # m, m/s, m: how far above its station it waits, how fast it comes down from there, and how far it goes up out of view
+    waits = [("above", "f8"), ("lowers", "f8"), ("lifts", "f8")]
+    return np.dtype([*sight, ("leans", "i8"), ("level", "f8"), ("near", "f8"), *waits])
 
 
 def told(scenario: Scenario, lever: Array, lean: float = 0.0) -> Records:
@@ -70,12 +81,15 @@ def told(scenario: Scenario, lever: Array, lean: float = 0.0) -> Records:
     """
     camera, p = scenario.camera, np.zeros(1, told_layout())
     p["line"] = np.array(camera.marker_m) - lever - camera.position_m
-    widest = min(camera.incidence_max_deg, 0.5 * min(camera.field_of_view_deg))
+    angle = min(camera.incidence_max_deg, camera.hidden_from_deg)
+    widest = min(angle, 0.5 * min(camera.field_of_view_deg))
     # Of a camera that sees hardly further than a leaning UAV allows, half of what it sees.
     p["cone"] = np.tan(np.deg2rad(max(widest - max(LEAN_DEG, np.rad2deg(lean)), 0.5 * widest)))
     p["leans"] = lean > 0.0
-    p["level"] = np.deg2rad(max(camera.incidence_max_deg - (0.5 * min(camera.field_of_view_deg) - MARKER_DEG), 0.0))
+    p["level"] = np.deg2rad(max(angle - (0.5 * min(camera.field_of_view_deg) - MARKER_DEG), 0.0))
     p["near"] = NEAR * (scenario.place.wait_below_m + p["line"][0, 2])
+    p["above"], p["lowers"] = (WAITS_ABOVE_M if lean > 0.0 else 0.0), LOWERS_MPS
+    p["lifts"] = ABOVE_M + (HEAVES_M if scenario.foretold_deck else 0.0)
     waits = scenario.place.catch_m[2] - scenario.place.wait_below_m
     p["highest"] = waits + DEEPEST * camera.depth_max_per_size * camera.marker_size_m - p["line"][0, 2]
     return p
@@ -93,6 +107,10 @@ def in_view(e: Record, waits: bool, p: Record, s: Record) -> Array:
     """
     place, v = p.station.copy(), p.sight
     x, y = e.plate[0] - e.r[0] + v.line[0], e.plate[1] - e.r[1] + v.line[1]
+    if v.leans:
+        step = v.lowers * p.period * p.tick_s
+        s.above += min(max((v.above if waits else 0.0) - s.above, -step), step)
+        place[2] += s.above
     if v.leans and waits:
         share = upwind(e.plate[2] - e.r[2] + v.line[2], p, s)
         for i in range(2):
@@ -101,9 +119,11 @@ def in_view(e: Record, waits: bool, p: Record, s: Record) -> Array:
     aside = np.hypot(x, y)
     if v.leans and e.plate_age > UNSEEN_S:
         # What is reckoned errs more by the second: away from arm and rails, and into the wider view.
-        place[2] += ABOVE_M
+        place[2] += v.lifts
     needed = e.r[2] - v.line[2] + aside / v.cone
     place[2] = max(place[2], min(needed, v.highest))
+    for i in range(3):
+        s.asked[i] = place[i]
     return place
 
 
@@ -138,8 +158,11 @@ def seek(alone_s: float, e: Record, known: bool, p: Record, s: Record) -> None:
         s.sought = 1
         for i in range(3):
             s.lost[i], s.step[i] = e.plate[i], 0.0
-        s.step[2] = max(p.station[2] + ABOVE_M - e.plate[2], 0.0)
-    s.step[2] = min(s.step[2] + RISE_MPS * p.tick_s, max(p.sight.highest - s.lost[2], s.step[2]))
+        s.begun = alone_s
+    first = max(p.station[2] + p.sight.lifts - s.lost[2], 0.0)
+    span = max(p.sight.highest - s.lost[2] - first, LEAST_SPAN_M)
+    swept = (RISE_MPS * (alone_s - s.begun)) % (2.0 * span)
+    s.step[2] = first + min(swept, 2.0 * span - swept)
     height = s.lost[2] + (0.5 * s.step[2] if alone_s > RISEN_S else 0.0)
     if height > e.r[2] + PASSES_M:
         share = upwind(height - e.r[2] + p.sight.line[2], p, s) if p.sight.leans else 0.0

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from armland.mission.reference.guided import MOST_HOVER
-from armland.mission.reference.moves import BACK_OFF, MOVE, YIELD
+from armland.mission.reference.moves import BACK_OFF, FLEE, MOVE, YIELD
 from armland.mission.supervisor.reading import LEAPT_S, misreads
 from armland.mission.supervisor.rising import DRIFTS_S, needed
 from armland.mission.supervisor.table import FAULT, FAULTS
@@ -264,7 +264,7 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     made = b.told.estimate.mass * kept.refer.a[2] + known.weight * (known.felt - e.thrust / max(kept.act.hover, 1e-3))
     seen.short += p.tick_s / SHORT_S * (e.hinge_force[2] - made - seen.short)
     gone = (m.tick - seen.off) * p.tick_s > STUCK_S and seen.off > 0
-    leaves = row.arm == BACK_OFF or row.arm == MOVE
+    leaves = row.arm == BACK_OFF or row.arm == MOVE or row.arm == FLEE
     pulls = drawn > STUCK_M**2 and _force(e) > p.stuck
     # One that was not carried yet and lies on the arm may be too weak to rise.
     follows = seen.carried == 1 and kept.decide.retreat > FOLLOWED_M and e.plate_age < SEEN_S and gap < TOUCHES_M**2

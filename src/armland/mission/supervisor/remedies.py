@@ -116,6 +116,7 @@ UNMET: dict[str, str] = {
     "lean": "the UAV did not take the attitude that was asked of it",
     "image_offset": "the images showed the plate beside the magnet",
     "image_gap": "the images showed the plate off the magnet",
+    "spare": "gusts left the rotors no thrust to spare",
 }
 """Signal of `phases.SIGNALS` -> what is so where a phase waits for it in vain."""
 

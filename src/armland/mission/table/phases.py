@@ -33,10 +33,11 @@ SIGNALS = {
     "lean": "deg",
     "image_offset": "m",
     "image_gap": "m",
+    "spare": "1",
 }
 """What guards may ask for, and the unit. `offset` is horizontal, as reckoned; `image_offset` what the newest images show of it along
 the magnet's face, `image_gap` across it; `pull` the vertical hinge force that pulls the UAV down, `lean` the angle of the UAV's z axis
-to the one that was asked for."""
+to the one that was asked for, `spare` the thrust that the rotors have left, over what they have left where nothing blows."""
 
 SIGNAL = {name: i for i, name in enumerate(SIGNALS)}
 
@@ -55,11 +56,13 @@ ARM = (
     "follow",
     "lower",
     "nod",
+    "flee",
 )
 """Reference of the arm: rest where it is; septic blend from rest to below the plate; below the plate; the gap to the plate closes;
 septic move to the phase's target; septic move away downwards from where it is; give way to the hinge force; brakes on; run-up to
 the speed that the UAV is given, then on at it; down from below the UAV at its speed, and to rest; balance the UAV; the mission's
-path; septic move to the phase's target, then on downwards at a steady speed; a nod, by which the tool is weighed."""
+path; septic move to the phase's target, then on downwards at a steady speed; a nod, by which the tool is weighed;
+away from below the plate, along with it."""
 
 UAV = ("autonomous", "station", "level", "ramp", "balance", "off", "run_up", "cruise", "hinged")
 """The UAV hovers by itself; keeps its station by the ground's estimate; level with the thrust it has; level with a

@@ -199,7 +199,7 @@ def _outdoors(scenario: Scenario) -> dict[str, Any]:
             update(out, nested(key, value))
     usual = all(getattr(scenario.place, key) == place for key, place in USUAL.items())
     if usual and not any(is_settled(scenario, f"place.{key}") for key in ROOMY):
-        update(out, {"place": {key: list(place) for key, place in ROOMY.items()}})
+        update(out, {"place": dict(ROOMY)})
     return out
 
 

@@ -32,6 +32,7 @@ from armland.plant.devices.camera_numbers import ERRORS, QUEUE, kept_layout, tol
 from armland.plant.devices.detector_errors import claim, loss, second_pose
 from armland.plant.noise import uniform
 from armland.plant.scene.eye import MARKER_DOWN
+from armland.plant.sight import AZIMUTHS
 from armland.records import Record
 from armland.rotations import Array, conjugate, from_rotation_vector, matrix, multiply, turned, turned_back
 
@@ -129,7 +130,7 @@ def visible(offset: Array, R_cm: Array, told: Record) -> bool:
         return False
     distance = np.sqrt(offset[0] ** 2 + offset[1] ** 2 + offset[2] ** 2)
     facing = -(R_cm[0, 2] * offset[0] + R_cm[1, 2] * offset[1] + R_cm[2, 2] * offset[2]) / distance
-    if facing < told.cos_incidence:
+    if facing < told.cos_incidence or facing < _cos_clear(offset, R_cm, told):
         return False
     half = 0.5 * told.marker_size
     for i in range(4):
@@ -142,6 +143,15 @@ def visible(offset: Array, R_cm: Array, told: Record) -> bool:
         if z <= 0.0 or abs(x) > told.half_width * z or abs(y) > told.half_height * z:
             return False
     return True
+
+
+@njit(cache=True)
+def _cos_clear(offset: Array, R_cm: Array, told: Record) -> float:
+    # Of the directions to both sides the one in which less is seen.
+    x = -(R_cm[0, 0] * offset[0] + R_cm[1, 0] * offset[1] + R_cm[2, 0] * offset[2])
+    y = -(R_cm[0, 1] * offset[0] + R_cm[1, 1] * offset[1] + R_cm[2, 1] * offset[2])
+    at = int(np.floor(np.arctan2(y, x) / (2.0 * np.pi) * AZIMUTHS))
+    return float(max(told.cos_clear[at % AZIMUTHS], told.cos_clear[(at + 1) % AZIMUTHS]))
 
 
 @njit(cache=True)

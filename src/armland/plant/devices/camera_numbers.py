@@ -6,6 +6,7 @@ from armland.errors import PlantError
 from armland.plant.devices.detector_errors import DETECTOR
 from armland.plant.noise import stream
 from armland.plant.scene.composition import Scene
+from armland.plant.sight import AZIMUTHS, clear_angles
 from armland.records import Records
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -65,6 +66,7 @@ def told_layout(joints: int) -> np.dtype:
             ("depth_min", "f8"),  # m
             ("depth_max", "f8"),  # m
             ("cos_incidence", "f8"),
+            ("cos_clear", "f8", (AZIMUTHS,)),  # likewise of what its own UAV hides, by azimuth in the marker's frame
             ("lateral", "f8", (2,)),
             ("depth", "f8", (2,)),
             ("detector", "f8", (4, 2)),  # lateral, depth, tilt, yaw: `PowerLaw`
@@ -118,6 +120,10 @@ def tell(told: Records, scenario: Scenario, scene: Scene) -> None:
         return
     told[:] = camera_told(drawn_camera(scenario.camera, scenario.imperfections), scenario.run.rate_hz)
     told["fitted"] = 1
+    if scene.uav_body >= 0:
+        told["cos_clear"] = np.cos(
+            clear_angles(scene.model, scene.uav_body, np.deg2rad(scenario.camera.incidence_max_deg))
+        )
     if scenario.imperfections.camera:
         told["shift"], told["slope"] = mounting(scenario)
 
@@ -154,7 +160,7 @@ def camera_told(camera: Camera, base_hz: int) -> Records:
     p["half_width"], p["half_height"] = np.tan(0.5 * np.deg2rad(camera.field_of_view_deg))
     p["marker_size"], p["depth_min"] = camera.marker_size_m, camera.depth_min_m
     p["depth_max"] = camera.depth_max_per_size * camera.marker_size_m
-    p["cos_incidence"] = np.cos(np.deg2rad(camera.incidence_max_deg))
+    p["cos_incidence"], p["cos_clear"] = np.cos(np.deg2rad(camera.incidence_max_deg)), -1.0
     p["lateral"] = noise_through(camera.reference_m, camera.lateral_m, 1)
     p["depth"] = noise_through(camera.reference_m, camera.depth_m, 2)
     p["detector"], p["smeared"] = DETECTOR[:4], DETECTOR.smeared
@@ -180,5 +186,6 @@ def noise_through(reference: tuple[float, float], sigma: tuple[float, float], po
 def see_all(told: Records) -> None:
     """Let the camera of `told` (1,) see a marker wherever it is before it, and lose none."""
     told["depth_min"], told["depth_max"], told["cos_incidence"] = 0.0, np.inf, -1.0
+    told["cos_clear"] = -1.0
     told["half_width"] = told["half_height"] = np.inf
     told["lose"] = told["stay_lost"] = told["smear_scale"] = 0.0
