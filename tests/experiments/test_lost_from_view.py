@@ -7,6 +7,9 @@ from armland.experiments.episode import fly_prepared, prepare
 from armland.scenario import load_scenario
 
 WIND = {"deviation": {"air": {"wind_mps": [2.0, 2.0], "gust_mps": [0.5, 0.5]}}}
+NARROW = {"camera": {"incidence_max_deg": 25.0}}
+"""A camera that sees no marker at flatter angles, from whichever side."""
+
 SHOVE = {"kind": "push", "phase": "align", "body": "uav", "size": 0.8, "direction": [0.0, 1.0, 0.0], "lasts_s": 1.0}
 """A sixth of its weight."""
 
@@ -39,7 +42,7 @@ def no_search(board):
 @pytest.mark.parametrize(("change", "stays"), [(None, True), (no_cone, False)])
 def test_uav_that_a_wind_takes_aside_stays_in_view_or_is_found(change, stays):
     """Negative control: brought down to its station first, it leaves the view, and must be looked for."""
-    episode = flown(change, **WIND)
+    episode = flown(change, **WIND, **NARROW)
     assert episode.result["success"], episode.result["reason"]
     assert (unseen_s(episode) < 0.5) == stays
 

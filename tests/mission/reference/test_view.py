@@ -40,12 +40,13 @@ def asked(bench, aside, waits=True):
 
 
 def seen(bench, aside, height, lean):
-    """Whether the plant's camera sees the marker of a UAV whose pivot is there, leaning by `lean` (3,), rad."""
+    """Whether the plant's camera sees the marker of a UAV with its pivot there, leaning by `lean` (3,), rad, where its skids hide it."""
     camera, R = bench.plan.scenario.camera, matrix(from_rotation_vector(np.array(lean)))
     lever = bench.told["act"]["uav"]["lever"][0]
     pivot = np.array([*(bench.e["r"][0, :2] + aside), height])
     offset = pivot + R @ (np.array(camera.marker_m) - lever) - bench.e["r"][0] - camera.position_m
-    return bool(visible(offset, np.ascontiguousarray(R @ matrix(MARKER_DOWN)), camera_told(camera, 1000)[0]))
+    told = camera_told(camera.model_copy(update={"incidence_max_deg": camera.hidden_from_deg}), 1000)[0]
+    return bool(visible(offset, np.ascontiguousarray(R @ matrix(MARKER_DOWN)), told))
 
 
 AROUND = [0.3 * np.array([np.cos(a), np.sin(a)]) for a in np.arange(0.0, 2.0 * np.pi, np.pi / 6.0)]
