@@ -40,7 +40,7 @@ def asked(bench, aside, waits=True):
 
 
 def seen(bench, aside, height, lean):
-    """Whether the plant's camera sees the marker of a UAV with its pivot there, leaning by `lean` (3,), rad, where its skids hide it."""
+    """Whether the plant's camera sees the marker of a UAV with its pivot there, leaning by `lean` (3,), rad, past its skids."""
     camera, R = bench.plan.scenario.camera, matrix(from_rotation_vector(np.array(lean)))
     lever = bench.told["act"]["uav"]["lever"][0]
     pivot = np.array([*(bench.e["r"][0, :2] + aside), height])
