@@ -8,7 +8,7 @@ import numpy as np
 from armland.errors import ModelError
 from armland.models.arm_file.inertia import NOTHING, lumped
 from armland.models.arm_file.tip import NEEDED, Tip, tip
-from armland.models.arm_file.tree import HINGE, SLIDE, Body, Inertial, Joint, Pose, Shape, Tree, here
+from armland.models.arm_file.tree import HINGE, SLIDE, Body, Inertial, Joint, Mesh, Pose, Shape, Tree, here
 from armland.rotations import matrix
 
 WEIGHTY = 0.05
@@ -23,6 +23,7 @@ class Link(NamedTuple):
     joints: tuple[Joint, ...]  # driven
     inertial: Inertial | None
     shapes: tuple[Shape, ...]
+    meshes: tuple[Mesh, ...] = ()
 
 
 class Chain(NamedTuple):
@@ -190,7 +191,8 @@ def _link(tree: Tree, members: list[int], at: list[Pose], own: _Own) -> Link:
     if own.joints:
         _check_mass(tree, members, own)
     shapes = tuple(s._replace(pose=at[m].then(s.pose), of=bodies[m].name) for m in members for s in bodies[m].shapes)
-    return Link(name, own.pose, own.joints, lumped(parts), shapes)
+    meshes = tuple(x._replace(pose=at[m].then(x.pose)) for m in members for x in bodies[m].meshes)
+    return Link(name, own.pose, own.joints, lumped(parts), shapes, meshes)
 
 
 def _check_mass(tree: Tree, members: list[int], own: _Own) -> None:
