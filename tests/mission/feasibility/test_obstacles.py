@@ -171,7 +171,7 @@ def test_planner_and_judge_take_the_same_shapes_for_the_arm_and_the_uav(gripping
 
 
 def test_links_are_measured_by_the_meshes_that_their_file_draws(tmp_path):
-    """A block around the third link ends 30 mm above the floor where the arm stands upright; the capsule in its place is far from it."""
+    """A block around the third link ends 30 mm above the floor where the arm stands upright; the capsule instead of it is far up."""
     file, ends = tmp_path / "ok.urdf", ARMS / "ok.urdf"
     part = '<link name="l3"><visual><geometry><mesh filename="block.obj"/></geometry></visual>'
     file.write_text(ends.read_text("utf-8").replace('<link name="l3">', part))

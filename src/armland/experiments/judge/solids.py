@@ -71,8 +71,8 @@ def solids_of(scene: Scene, worn: Mapping[str, Worn] = NONE) -> str:
             _add_shapes(fixed, model, b.id, drawn(model, b.id), (STAND_BIT, 0))
     plane = mujoco.mjtGeom.mjGEOM_PLANE
     spec.worldbody.add_geom(name=FLOOR, type=plane, size=[0, 0, 0.1], contype=STAND_BIT, conaffinity=0)
-    for one, two in _left_out(spec.compile()):
-        spec.add_exclude(bodyname1=one, bodyname2=two)
+    for near, far in _left_out(spec.compile()):
+        spec.add_exclude(bodyname1=near, bodyname2=far)
     spec.compile()
     return str(spec.to_xml())
 

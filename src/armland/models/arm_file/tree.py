@@ -107,6 +107,7 @@ class Mesh(NamedTuple):
     scale: Array  # (3,)
     pose: Pose
     touches: bool = True  # whether the file means it for contact
+    of: str = ""  # body of the file that it belongs to
 
 
 class Body(NamedTuple):

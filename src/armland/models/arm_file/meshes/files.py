@@ -53,9 +53,9 @@ def _obj(path: Path) -> Array:
         if kind == "v":
             points.append([float(x) for x in rest.split()[:3]])
         elif kind == "f":
-            corners = [int(word.partition("/")[0]) for word in rest.split()]
+            told = [int(word.partition("/")[0]) for word in rest.split()]
             # Counted from 1, or backwards from the last point so far.
-            loops.append([c - 1 if c > 0 else len(points) + c for c in corners])
+            loops.append([c - 1 if c > 0 else len(points) + c for c in told])
     counts = np.array([len(loop) for loop in loops], np.int64)
     corners = np.array([c for loop in loops for c in loop], np.int64)
     return np.asarray(np.array(points, float).reshape(-1, 3)[_fans(corners, counts)])

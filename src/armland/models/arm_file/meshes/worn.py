@@ -63,7 +63,11 @@ def _read(path: Path, changed: int) -> Array:
 
 
 def merged(corners: Array) -> Solid | None:
-    """Triangles (k, 3, 3), m, with each corner once, on the grid; None where they enclose nothing."""
+    """Triangles with each corner once, on the grid; None where they enclose nothing.
+
+    Args:
+        corners: of triangles (k, 3, 3), m.
+    """
     if not len(corners):
         return None
     cells, index = np.unique(np.rint(corners.reshape(-1, 3) / GRID_M).astype(np.int64), axis=0, return_inverse=True)
@@ -73,4 +77,4 @@ def merged(corners: Array) -> Solid | None:
     vertices = cells[np.unique(faces)] * GRID_M if len(faces) else np.zeros((0, 3))
     if len(vertices) < 4 or np.linalg.svd(vertices - vertices.mean(axis=0), compute_uv=False)[-1] < THIN_M:
         return None
-    return Solid(cells * GRID_M, faces)
+    return Solid(np.asarray(cells * GRID_M), faces)
