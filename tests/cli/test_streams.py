@@ -1,11 +1,15 @@
-"""Standard output in any encoding, closed, or on a full disk."""
+"""Standard output in any encoding, closed, or on a full disk; what is said on standard error while a search goes on."""
 
 import errno
 import io
 import sys
+import threading
+import time
 
 import pytest
+from rich.console import Console
 
+from armland.cli.console import patiently
 from armland.cli.streams import Outlet, outlets, spelled
 
 
@@ -71,3 +75,28 @@ def test_closed_streams_are_no_error(monkeypatch) -> None:
     with outlets() as (out, _):
         print("nobody hears this")
     assert out.failure is None
+
+
+def told_by(work, patience_s):
+    said = io.StringIO()
+    with patiently(Console(file=said, width=200), patience_s):
+        work()
+    return said.getvalue().splitlines()
+
+
+def test_long_search_says_that_it_goes_on_and_a_short_one_nothing():
+    """Each line comes after twice as long as the one before: in 0.5 s after 0.05, 0.15 and 0.35 s."""
+    lines = told_by(lambda: time.sleep(0.5), 0.05)
+    assert 1 <= len(lines) <= 3
+    assert all(line.startswith("Looking for a place where this arm can catch") for line in lines)
+    assert told_by(lambda: None, 60.0) == []
+
+
+def test_search_that_is_refused_ends_its_lines_with_it():
+    def refused():
+        raise ValueError("no place")
+
+    before = threading.active_count()
+    with pytest.raises(ValueError, match="no place"):
+        told_by(refused, 60.0)
+    assert threading.active_count() == before

@@ -1,5 +1,6 @@
 """Progress on standard error, and whether a start compiles."""
 
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -9,6 +10,11 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
 COMPILING = "Compiling the control laws: this happens once and takes less than a minute."
+
+SEARCHING = "Looking for a place where this arm can catch and put down; where few poses work that takes minutes: {:.0f} s so far."
+
+PATIENCE_S = 5.0
+"""Seconds after which a search says that it goes on; each further line comes after twice as long."""
 
 TELL_S = 30.0
 """Seconds between two lines about a campaign where there is no terminal."""
@@ -44,6 +50,26 @@ def ready(joints: int = 7) -> Console:
         task = bar.add_task("compiled")
         warm(joints, pieces(joints), lambda done, total: bar.update(task, completed=done, total=total))
     return console
+
+
+@contextmanager
+def patiently(console: Console, patience_s: float = PATIENCE_S) -> Iterator[None]:
+    """Say now and then that a search goes on, for as long as what stands inside takes."""
+    done, begun = threading.Event(), time.monotonic()
+
+    def tell() -> None:
+        wait = patience_s
+        while not done.wait(wait):
+            console.print(SEARCHING.format(time.monotonic() - begun), highlight=False)
+            wait *= 2.0
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        done.set()
+        teller.join()
 
 
 def progress_bar(console: Console) -> Progress:

@@ -168,3 +168,23 @@ def test_planner_and_judge_take_the_same_shapes_for_the_arm_and_the_uav(gripping
         wanted = shapes(judged, range(judged.ngeom), theirs)
         assert wanted, theirs
         assert wanted <= shapes(model, measured, ours), theirs
+
+
+def test_links_are_measured_by_the_meshes_that_their_file_draws(tmp_path):
+    """A block around the third link ends 30 mm above the floor where the arm stands upright; the capsule instead of it is far up."""
+    file, ends = tmp_path / "ok.urdf", ARMS / "ok.urdf"
+    part = '<link name="l3"><visual><geometry><mesh filename="block.obj"/></geometry></visual>'
+    file.write_text(ends.read_text("utf-8").replace('<link name="l3">', part))
+    scenario = load_scenario("landing", {"arm": {"file": str(file), "ee": "tool0"}}).believed()
+    arm = arm_model(scenario)
+    still = np.zeros(arm.joints)
+    arm.update(still, still)
+    height = arm.anchor[2, 2]
+    bare = Obstacles(scenario).nearest(still, AWAY)
+    corners = [f"v {x:g} {y:g} {z:g}\n" for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (0.03 - height, 0.1)]
+    quads = ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4")
+    (tmp_path / "block.obj").write_text("".join(corners) + "".join(f"f {q}\n" for q in quads))
+    near = Obstacles(scenario).nearest(still, AWAY)
+    assert (near.link, near.other) == ("link l3", "the floor")
+    assert near.room == pytest.approx(0.03 - FLOOR_M, abs=1e-3)
+    assert bare.other != "the floor"

@@ -1,5 +1,7 @@
 """Moves that are too fast for an arm's joints take longer, and no others; what would take far longer is refused."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -110,6 +112,55 @@ def test_arm_too_damped_to_follow_the_uav_is_refused(landing_plan):
     scenario, arm = stiff_to_turn(landing_plan, 10.0 * DAMPING)
     with pytest.raises(WorkspaceError, match=r"joint \w+ has 800 N·m·s/rad of damping, and its \d+ N·m cannot"):
         paced(PHASES, LANDING, arm, landing_plan.home, scenario, WEIGHT_N)
+
+
+def heavy_to_quicken(landing_plan, armature, torque):
+    arm = arm_model(landing_plan.scenario)
+    arm.model.dof_armature[FROM_IT] += armature
+    arm.tau_max[FROM_IT] = torque
+    arm.update(landing_plan.home, np.zeros(arm.joints))
+    return landing_plan.scenario, arm
+
+
+def quickening(scenario, arm, q, duration):
+    """Largest torque of the joint that gains speed in the move up to the standoff and as station keeping brakes the UAV, N·m, by
+    differences of poses.
+    """
+    brakes = scenario.control.station.k_velocity * scenario.bounds.uav_speed_mps
+    catch, place = np.array(scenario.place.catch_m), scenario.place
+    q, qs = lead(arm, q, catch - [0.0, 0.0, place.wait_below_m]), []
+    for t in np.arange(0.0, duration, 0.01):
+        s, _, _ = septic(t / duration, duration)
+        q = pose(arm, q, catch + [0.0, 0.0, -place.wait_below_m + s * (place.wait_below_m - place.standoff_m)])
+        qs.append(q)
+    gained, most = np.diff(qs, 2, axis=0) / 1e-4, 0.0
+    for q, qdd in zip(qs[1:], gained, strict=False):
+        arm.update(q, np.zeros(arm.joints))
+        follows = np.linalg.norm([(arm.mass_matrix @ joint_speeds(arm, brakes * axis))[FROM_IT] for axis in np.eye(3)])
+        most = max(most, abs(arm.mass_matrix @ qdd + arm.gravity)[FROM_IT] + follows)
+    return most
+
+
+def test_heavy_armature_is_quickened_as_slowly_as_its_torque_needs(landing_plan):
+    """Without the stretch the same move asks for more than the joint has; a light one keeps the mission's times."""
+    scenario, arm = heavy_to_quicken(landing_plan, 30.0, 110.0)
+    made, own = durations(paced(PHASES, LANDING, arm, landing_plan.home, scenario, WEIGHT_N)), durations(PHASES)
+    assert made["approach"] > own["approach"]
+    assert quickening(scenario, arm, landing_plan.home, own["approach"]) > 110.0
+    assert quickening(scenario, arm, landing_plan.home, made["approach"]) < 110.0
+    scenario, light = heavy_to_quicken(landing_plan, 0.0, 110.0)
+    assert paced(PHASES, LANDING, light, landing_plan.home, scenario, WEIGHT_N) == PHASES
+
+
+def test_refusal_of_a_heavy_armature_names_a_torque_that_works(landing_plan):
+    scenario, arm = heavy_to_quicken(landing_plan, 60.0, 110.0)
+    with pytest.raises(
+        WorkspaceError, match=r"moves 6\d\.?\d* kg·m², 6\d\.?\d* of it armature, and its 110 N·m cannot"
+    ) as refusal:
+        paced(PHASES, LANDING, arm, landing_plan.home, scenario, WEIGHT_N)
+    named = float(re.search(r"at least (\S+) N·m", str(refusal.value))[1])
+    scenario, arm = heavy_to_quicken(landing_plan, 60.0, 1.1 * named)
+    assert durations(paced(PHASES, LANDING, arm, landing_plan.home, scenario, WEIGHT_N))["approach"] > 0.0
 
 
 def test_following_bounds_the_joint_speeds_of_all_directions(landing_plan):

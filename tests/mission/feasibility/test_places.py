@@ -1,5 +1,7 @@
 """Places over a grid in front of an arm: reached, upright, in front, the same again, and nearer where nearness counts."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,8 @@ from armland.mission.feasibility.obstacles import Obstacles
 from armland.mission.feasibility.places import Bench, Place, places
 from armland.models.parameters import arm_model
 from armland.scenario import load_scenario
+
+ROOT = Path(__file__).parents[3]
 
 EVERYTHING: frozenset[str] = frozenset()
 
@@ -55,6 +59,30 @@ def test_arm_that_reaches_no_centre_begins_from_poses_that_it_can_take(monkeypat
     assert next(places(bench(), EVERYTHING))
     monkeypatch.setattr(grid, "_scattered", lambda search: [])
     assert not next(places(bench(), EVERYTHING))
+
+
+def counted(monkeypatch, same_rad):
+    """Places of an arm of six joints, and how many poses were measured to find them."""
+    calls, measure = [], grid._merit
+
+    def counting(*args):
+        calls.append(1)
+        return measure(*args)
+
+    monkeypatch.setattr(grid, "_merit", counting)
+    monkeypatch.setattr(grid, "SAME_RAD", same_rad)
+    found = grid.everywhere(bench(arm={"file": str(ROOT / "examples" / "six_axis.urdf")}))
+    monkeypatch.setattr(grid, "_merit", measure)
+    return [(p.catch.tolist(), p.home.tolist()) for p in found], len(calls)
+
+
+@pytest.mark.slow
+def test_branches_that_meet_are_not_measured_twice_and_the_places_are_the_same(monkeypatch):
+    once, few = counted(monkeypatch, grid.SAME_RAD)
+    every, many = counted(monkeypatch, 0.0)
+    assert once == every
+    assert once
+    assert few < 0.8 * many
 
 
 def test_the_best_is_nearer_where_nearness_counts_for_more(found):

@@ -1,8 +1,20 @@
 """The take-off with and without a speed: which phases, which points."""
 
+import numpy as np
 import pytest
 
-from armland.mission.missions.takeoff import CURRENT_GONE_S, PHASES, TAKEOFF, gives_speed, launch_phases
+from armland.mission.belief import flyer
+from armland.mission.missions.takeoff import (
+    CURRENT_GONE_S,
+    PHASES,
+    QUICKEST,
+    TAKEOFF,
+    TEARS,
+    gives_speed,
+    launch_phases,
+)
+from armland.mission.reference.septic import septic
+from armland.models.airframe.sizing import sized
 from armland.models.capture import Grip
 from armland.scenario import load_scenario
 
@@ -162,3 +174,26 @@ def test_uav_may_touch_the_cradle_up_to_the_lift_and_not_in_the_end():
         assert [n for n, p in phases.items() if p.on_cradle and not p.final] == before
         assert not phases["done"].on_cradle
         assert phases["refused"].on_cradle
+
+
+def leaving(settings):
+    """Time of the arm's leaving, s, and the largest pull on the plate by the UAV's inertia, N, by the septic's accelerations."""
+    scenario = sized(load_scenario("landing", settings)).believed()
+    clear = next(p for p in TAKEOFF.phases(scenario) if p.name == "clear")
+    rises = [septic(u, clear.duration_s)[2] for u in np.linspace(0.0, 1.0, 201)]
+    return clear.duration_s, max(rises) * scenario.place.wait_below_m * flyer(scenario).mass, scenario.magnet.residual_n
+
+
+def test_arm_leaves_a_light_uav_fast_enough_to_tear_the_plate_off():
+    """Its magnet keeps more of its weight than the AR.Drone's, which the usual time tears off."""
+    usual, pull, kept = leaving({})
+    assert usual == PLAIN["clear"].duration_s
+    assert pull > TEARS * kept
+    quick, pull, kept = leaving({"airframe": "crazyflie"})
+    assert quick < usual
+    assert pull == pytest.approx(TEARS * kept, rel=1e-3)
+    assert pull * (quick / usual) ** 2 < TEARS * kept
+
+
+def test_arm_never_leaves_in_less_than_a_share_of_its_time():
+    assert leaving({"magnet": {"residual_n": 50.0}})[0] == QUICKEST * PLAIN["clear"].duration_s

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from armland.mission.reference.septic import PEAK, septic, septic_integral
+from armland.mission.reference.septic import PEAK, SWELL, septic, septic_integral
 
 OWN = Polynomial([0, 0, 0, 0, 35, -84, 70, -20])
 DURATION = 2.5
@@ -38,3 +38,10 @@ def test_it_rests_before_and_after(u, expected):
 def test_peak_rate_is_over_its_mean_what_is_said():
     u = np.linspace(0.0, 1.0, 2001)
     assert max(septic(x, 1.0)[1] for x in u) == pytest.approx(PEAK, abs=1e-9)
+
+
+def test_peak_acceleration_is_what_is_said_and_where():
+    u = np.linspace(0.0, 1.0, 2001)
+    rises = [septic(x, 1.0)[2] for x in u]
+    assert max(rises) == pytest.approx(SWELL, abs=1e-4)
+    assert u[int(np.argmax(rises))] == pytest.approx((5.0 - 5.0**0.5) / 10.0, abs=1e-3)

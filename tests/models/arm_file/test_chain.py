@@ -168,3 +168,27 @@ def test_small_part_with_an_impossible_inertia_does_not_matter_and_a_link_does(c
     assert len(read_arm(changed("ok.urdf", ("</robot>", part.format(m=0.05)))).rows) == 7
     with pytest.raises(ModelError, match="link 'eye': no rigid body"):
         read_arm(changed("ok.urdf", ("</robot>", part.format(m=1.0))))
+
+
+HAND = """<link name="hand"><inertial><mass value="0.3"/><inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/>
+</inertial><visual><geometry><mesh filename="hand.stl"/></geometry></visual></link>
+<joint name="hand_fixed" type="fixed"><parent link="l7"/><child link="hand"/></joint>
+<link name="finger"><inertial><mass value="0.1"/><inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual><geometry><mesh filename="finger.stl"/></geometry></visual></link>
+<joint name="jaw" type="prismatic"><parent link="PARENT"/><child link="finger"/><axis xyz="0 1 0"/>
+<limit lower="0" upper="0.04" effort="20" velocity="0.1"/></joint>
+</robot>"""
+"""A gripper of meshes: a hand that is fixed to the last link, and a finger that slides on it or on the link itself."""
+
+
+@pytest.mark.parametrize(("carrier", "seen"), [("hand", ["l7.stl"]), ("l7", ["l7.stl", "hand.stl"])])
+def test_meshes_of_a_gripper_are_not_looked_at_and_its_mass_counts(arms, tmp_path, carrier, seen):
+    """The tool takes its place; what has no finger, as a flange that is fixed, stays."""
+    text = (arms / "ok.urdf").read_text("utf-8").replace("</robot>", HAND.replace("PARENT", carrier))
+    part = '<link name="l7"><visual><geometry><mesh filename="l7.stl"/></geometry></visual>'
+    (tmp_path / "arm.urdf").write_text(text.replace('<link name="l7">', part))
+    made = read_arm(tmp_path / "arm.urdf", Asked("tool0")).chain
+    assert sorted(m.file.rpartition("/")[2] for m in made.links[-1].meshes) == sorted(seen)
+    assert made.links[-1].inertial.mass == pytest.approx(0.9)
+    (note,) = [n for n in made.notes if n.startswith("the meshes of the gripper")]
+    assert ("hand" in note.partition(": ")[2]) == (carrier == "hand")

@@ -129,6 +129,14 @@ def test_motors_commanded_from_minus_one_to_one_say_no_torque(changed):
     assert sources(file, "torque") == {"rule"}
 
 
+def test_effort_of_1_for_all_joints_says_no_torque(arm, changed):
+    """As programs write it that draw a URDF from a CAD model; asked for, or beside another effort, it counts."""
+    pairs = [(f'effort="{x:.0f}"', 'effort="1"') for x in {*TRUE}]
+    assert sources(read_arm(changed("ok.urdf", *pairs)), "torque") == {"rule"}
+    assert numbers(arm("ok.urdf", torque=(1.0,) * 7), "torque") == [1.0] * 7
+    assert numbers(read_arm(changed("ok.urdf", *(p for p in pairs if "120" not in p[0]))), "torque")[2] == 120.0
+
+
 @pytest.mark.parametrize("name", ["ok.urdf", "ok.xml", "nolimits.xml", "continuous_no_limit_tag.urdf", "novel.urdf"])
 def test_no_limit_is_zero_or_infinite(arm, name):
     for row in arm(name).rows:

@@ -10,7 +10,7 @@ from rich.console import Console
 from armland.cli import options
 from armland.cli.commands.arm import joints_of, tell_arm
 from armland.cli.commands.uav import tell_uav
-from armland.cli.console import diagnostics, flights_told, phases_told, progress_bar, ready
+from armland.cli.console import diagnostics, flights_told, patiently, phases_told, progress_bar, ready
 from armland.cli.exits import EXPLAINED
 from armland.cli.results import Results, Work, publish
 from armland.errors import ConfigurationError
@@ -128,7 +128,8 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
     console = ready(joints_of(loaded))
     from armland.experiments.episode import prepare
 
-    flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))
+    with patiently(diagnostics()):
+        flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))
     if moved := flight.moved or _roomier(loaded, flight.scenario):
         console.print(f"place: {moved}", highlight=False, markup=False, soft_wrap=True)
     if given["seeds"] > 1:

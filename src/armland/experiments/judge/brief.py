@@ -15,6 +15,8 @@ from armland.mission.plan import Plan
 from armland.mission.reference.path import Leg
 from armland.mission.supervisor.table import FAULTS
 from armland.mission.table.mission import Criterion
+from armland.models.arm_file.meshes.worn import worn
+from armland.models.parameters import arm_file
 from armland.models.weather import swayed
 from armland.plant.scene.composition import Scene
 from armland.plant.scene.uav import UAV
@@ -154,7 +156,7 @@ def metadata_of(scenario: Scenario, plan: Plan, scene: Scene) -> dict[str, str]:
         "faults": ",".join(FAULTS),
         "scenario": scenario.model_dump_json(),
         "overrides": scenario.overrides,
-        "solids": solids_of(scene),
+        "solids": solids_of(scene, worn(arm_file(scenario).chain) if scene.bond == "free" else {}),
     }
     return {**text, **{name: json.dumps(value, default=_plain) for name, value in data.items()}}
 

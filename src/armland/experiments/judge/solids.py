@@ -4,18 +4,20 @@ It is made from the plant's scene, deviations included, and stands in a log as t
 
 | solid | shapes |
 |---|---|
-| link of the arm | those that its file means for contact, else those that it draws, else what stands for a link without any |
+| link of the arm | shapes and meshes that its file means for contact, else those that it draws, else what stands for a link without |
 | tool | a capsule around magnet and camera, the sensor below it as it is drawn |
 | UAV | all that its file draws; not its plate, which the tool grips |
 | cradle, floor | rails and legs; the plane that the arm stands on |
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
 import mujoco
 import numpy as np
 
 from armland.models.airframe.body import drawn
+from armland.models.arm_file.meshes.worn import Solid, Worn
 from armland.models.arm_file.spec import PREFIX, SHAPE
 from armland.models.arm_file.strength import poses
 from armland.plant.scene.composition import Scene
@@ -32,8 +34,16 @@ ALWAYS = 0.9
 """Share of random poses: two solids that meet in more of them are built into each other."""
 
 
-def solids_of(scene: Scene) -> str:
-    """MJCF of the scene's solids; empty where the UAV hangs on the arm for good, as nothing can touch there."""
+NONE: Mapping[str, Worn] = MappingProxyType({})
+
+
+def solids_of(scene: Scene, worn: Mapping[str, Worn] = NONE) -> str:
+    """MJCF of the scene's solids; empty where the UAV hangs on the arm for good, as nothing can touch there.
+
+    Args:
+        scene: of the plant.
+        worn: meshes of the arm's links, by the name of their body.
+    """
     if scene.bond != "free":
         return ""
     spec = mujoco.MjSpec()
@@ -48,7 +58,10 @@ def solids_of(scene: Scene) -> str:
         if name.startswith((PREFIX, "armland_")):
             bodies[body] = _moving(model, body, bodies[int(model.body_parentid[body])])
             bits = (ARM_BIT, ARM_BIT | STAND_BIT | (0 if name == TOOL else UAV_BIT))
-            _add_shapes(bodies[body], model, body, _touched(model, body), bits)
+            one = worn.get(name, Worn((), False))
+            _add_shapes(bodies[body], model, body, [] if one.instead else _touched(model, body), bits)
+            for solid in one.solids:
+                _add_mesh(spec, bodies[body], solid, bits)
     uav = spec.worldbody.add_body(name=UAV, mocap=True)
     _add_shapes(uav, model, scene.uav_body, drawn(model, scene.uav_body), (UAV_BIT, 0))
     for name in ("stand", "cradle"):
@@ -58,8 +71,8 @@ def solids_of(scene: Scene) -> str:
             _add_shapes(fixed, model, b.id, drawn(model, b.id), (STAND_BIT, 0))
     plane = mujoco.mjtGeom.mjGEOM_PLANE
     spec.worldbody.add_geom(name=FLOOR, type=plane, size=[0, 0, 0.1], contype=STAND_BIT, conaffinity=0)
-    for one, two in _left_out(spec.compile()):
-        spec.add_exclude(bodyname1=one, bodyname2=two)
+    for near, far in _left_out(spec.compile()):
+        spec.add_exclude(bodyname1=near, bodyname2=far)
     spec.compile()
     return str(spec.to_xml())
 
@@ -106,6 +119,13 @@ def _add_shapes(body: mujoco.MjsBody, model: mujoco.MjModel, of: int, shapes: li
             conaffinity=bits[1],
             mass=0.0,
         )
+
+
+def _add_mesh(spec: mujoco.MjSpec, body: mujoco.MjsBody, solid: Solid, bits: tuple[int, int]) -> None:
+    name, shell = f"mesh_{len(spec.meshes)}", mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+    spec.add_mesh(name=name, uservert=solid.vertices.ravel(), userface=solid.faces.ravel(), inertia=shell)
+    kind = mujoco.mjtGeom.mjGEOM_MESH
+    body.add_geom(type=kind, meshname=name, contype=bits[0], conaffinity=bits[1], mass=0.0)
 
 
 def _left_out(model: mujoco.MjModel) -> Iterator[tuple[str, str]]:

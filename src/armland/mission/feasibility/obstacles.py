@@ -2,7 +2,7 @@
 
 | solid | what it is measured by |
 |---|---|
-| all links | the shapes that their file means for contact, else those that it draws, else what stands for a link without any |
+| all links | shapes, hulls of meshes that their file means for contact, else those that it draws, else what stands for a link without |
 | outer half, links without shapes | capsules from joint to joint as well, which is what the plant lets touch |
 | tool | a capsule around sensor, magnet and camera; the sensor as it is drawn |
 | UAV | what its file draws, skids, marker, and beams between the rotors, which is what the plant lets touch |
@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from armland.models.airframe.solids import OWN, add_cradle, add_links, add_tool, add_uav, stand_legs
-from armland.models.arm_file.spec import SHAPE
+from armland.models.arm_file.meshes.worn import Worn, worn
+from armland.models.arm_file.spec import PREFIX, SHAPE
 from armland.models.arm_file.strength import poses
 from armland.models.description import EE_SITE, compile_spec
-from armland.models.parameters import arm_spec, uav_parameters
+from armland.models.parameters import arm_file, arm_spec, uav_parameters
 from armland.rotations import Array
 from armland.scenario import Scenario
 
@@ -34,6 +35,9 @@ FAR_M, TOUCH_M, SAME_M = 0.05, 1e-6, 0.3
 
 SPARE_M = 0.002
 """By how much less than the largest distance of all poses is kept at most."""
+
+CORNERS = 64
+"""Of a mesh's convex hull, at most."""
 
 ALWAYS, SAMPLED = 0.9, 60
 """Share of random poses, and their number: two shapes that meet in more of them are built into each other."""
@@ -69,6 +73,7 @@ class Obstacles:
         """
         spec = arm_spec(scenario)
         bare = compile_spec(spec, "the arm")
+        _dress(spec, worn(arm_file(scenario).chain))
         solid = [g.name for g in spec.geoms if g.name.startswith(SHAPE)]
         own = add_tool(spec, scenario)
         links = [*solid, *add_links(spec, bare), *own]
@@ -209,6 +214,25 @@ class Obstacles:
         if part not in ("", link):
             return f"{part!r} on link {link!r}"
         return link if link.startswith("link") else f"link {link}"
+
+
+def _dress(spec: mujoco.MjSpec, links: dict[str, Worn]) -> None:
+    # Meshes in place of what stands for a link without shapes; MuJoCo measures to their convex hulls.
+    for name, one in links.items():
+        body = spec.body(name)
+        for geom in [g for g in body.geoms if one.instead and g.name.startswith(SHAPE)]:
+            spec.delete(geom)
+        for solid in one.solids:
+            mesh, shell = f"{SHAPE}{len(spec.meshes)}_mesh", mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+            spec.add_mesh(
+                name=mesh,
+                uservert=solid.vertices.ravel(),
+                userface=solid.faces.ravel(),
+                inertia=shell,
+                maxhullvert=CORNERS,
+            )
+            kind, called = mujoco.mjtGeom.mjGEOM_MESH, f"{mesh}:{name.removeprefix(PREFIX)}"
+            body.add_geom(name=called, type=kind, meshname=mesh, mass=0.0, contype=0, conaffinity=0)
 
 
 def _ends(pairs: list[_Pair]) -> NDArray[np.int64]:

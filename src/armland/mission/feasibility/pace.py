@@ -4,11 +4,15 @@
 |---|---|---|
 | ẋ = s'(u) (b − a)/T | velocity of the end effector in a move from a to b that takes T, `reference.septic` (3,) | m/s |
 | q̇ = 𝒥⁺ẋ | joint speeds of least length that give it, the attitude held (n,) | rad/s |
+| q̈ = 𝒥⁺(ẍ − 𝒥̇q̇) | joint accelerations of least length, likewise (n,) | rad/s² |
 | d, f | damping and dry friction of each joint, as the arm's file has them (n,) | N·m·s/rad, N·m |
+| a = \\|M q̈ + C q̇\\| | torque that the move's acceleration takes, armature included (n,) | N·m |
+| L | torque that weight, friction and following the UAV leave (n,) | N·m |
 | v | `bounds.uav_speed_mps`, at which the arm follows the UAV while it joins it | m/s |
 
-Torque bounds the speed as well: d q̇ may take what weight, friction and following the UAV leave of it. A joint with 100 N·m·s/rad
-and 50 N·m turns at no more than 0.4 rad/s, however fast its file says that it is.
+Torque bounds the speed as well: a move k times as long takes a/k² + d q̇/k of L. A joint with 100 N·m·s/rad
+and 50 N·m turns at no more than 0.4 rad/s, and one with 1 kg·m² of armature and 1 N·m gains no more than 1 rad/s in a second,
+however fast its file says that it is.
 """
 
 from collections.abc import Iterator
@@ -34,7 +38,7 @@ SLOWEST = 4.0
 """How many times longer than the mission has it a move may take; the UAV and the magnet would wait too long."""
 
 LEAST = 0.01
-"""Of a joint's torque that counts as left where nothing is."""
+"""Share of a joint's torque that counts as left where nothing is."""
 
 TORQUE = 0.95
 """Of the joints' torque limits that a move may take: what gravity, gain and zero of the torque err by."""
@@ -64,13 +68,9 @@ def paced(
         a, b = (_point(at, scenario) for at in mission.moves[phase.name])
         q = lead(arm, q, a)
         task = _Task(a, b, phase.duration_s, weight if phase.held else 0.0, phase.arm == "join")
-        seen = np.array([*_shares(arm, q, task, scenario)])
-        kind, worst = np.unravel_index(int(seen.max(axis=0).argmax()), seen.shape[1:])
-        most = float(seen.max())
+        most, told = max(_needs(arm, q, task, scenario), key=lambda need: need[0])
         if most > SHARE * SLOWEST:
-            raise WorkspaceError(
-                f"in the phase {phase.name} joint {arm.joint_names[worst]} {_told(int(kind), int(worst), most, arm, scenario)}"
-            )
+            raise WorkspaceError(f"in the phase {phase.name} joint {told}")
         times[phase.name] = phase.duration_s * max(most / SHARE, 1.0)
         q = lead(arm, q, b)
     return tuple(
@@ -93,36 +93,98 @@ class _Task(NamedTuple):
     follows: bool  # whether the arm follows the UAV meanwhile
 
 
-def _told(kind: int, joint: int, most: float, arm: ArmModel, scenario: Scenario) -> str:
-    until = f"up to {SHARE * SLOWEST:g} times the move is made slower"
-    if kind == 0:
-        return (
-            f"would have to turn at {most:.1f} times the {scenario.limits.joint_speed_share * arm.qd_max[joint]:.2f} rad/s that "
-            f"limits.joint_speed_share leaves it; {until}"
-        )
-    torque, damping = arm.tau_max[joint], arm.damping[joint]
+class _Demand(NamedTuple):
+    # What a move asks of the joints at one time, (n,) each, rad/s and N·m.
+    speed: Array
+    held: Array  # by weight and friction
+    following: Array  # by following the UAV
+    turning: Array  # by damping
+    gaining: Array  # by acceleration
+
+    def torque(self, tau_max: Array) -> Array:
+        # How many times longer the move has to take for the joints' torque, times SHARE (n,).
+        left = SHARE * np.maximum(TORQUE * tau_max - self.held - self.following, LEAST * tau_max)
+        return SHARE * (self.turning + np.sqrt(self.turning**2 + 4.0 * left * self.gaining)) / (2.0 * left)
+
+    def least(self) -> Array:
+        # Torque limits of which the slowest move may be made (n,), N·m.
+        move = self.turning / SLOWEST + self.gaining / SLOWEST**2
+        return (self.held + self.following + move / SHARE) / TORQUE
+
+
+def _needs(arm: ArmModel, q: Array, task: _Task, scenario: Scenario) -> Iterator[tuple[float, str]]:
+    # How many times longer than it is each point of a move would have it, times SHARE, and what is said of it.
+    rated = scenario.limits.joint_speed_share * arm.qd_max
+    for demand in _demands(arm, q, task, scenario):
+        shares = demand.speed / rated
+        j = int(shares.argmax())
+        yield float(shares[j]), _too_fast(j, float(shares[j]), arm, scenario)
+        shares = demand.torque(arm.tau_max)
+        j = int(shares.argmax())
+        yield float(shares[j]), _too_weak(j, demand, arm, scenario)
+
+
+UNTIL = f"up to {SHARE * SLOWEST:g} times the move is made slower"
+
+
+def _too_fast(joint: int, most: float, arm: ArmModel, scenario: Scenario) -> str:
     return (
-        f"has {damping:g} N·m·s/rad of damping, and its {torque:.0f} N·m cannot turn against that as fast as joining a UAV takes that "
-        f"flies at up to bounds.uav_speed_mps = {scenario.bounds.uav_speed_mps:g}, with its weight and friction; {until}. "
-        f"What works is more of arm.torque_limits_nm, or a file with less damping"
+        f"{arm.joint_names[joint]} would have to turn at {most:.1f} times the "
+        f"{scenario.limits.joint_speed_share * arm.qd_max[joint]:.2f} rad/s that limits.joint_speed_share leaves it; {UNTIL}"
     )
 
 
-def _shares(arm: ArmModel, q: Array, task: _Task, scenario: Scenario) -> Iterator[Array]:
-    # Of the allowed joint speeds, and of the torque that is left for damping (2, n), along a move, the null space sunk as the
-    # controller lets it.
+def _too_weak(joint: int, demand: _Demand, arm: ArmModel, scenario: Scenario) -> str:
+    speed, damping = scenario.bounds.uav_speed_mps, arm.damping[joint]
+    torque, most = arm.tau_max[joint], f"at least {demand.least()[joint]:.2g} N·m"
+    joining = f"joining a UAV takes that flies at up to bounds.uav_speed_mps = {speed:g}, with its weight and friction; {UNTIL}. "
+    if demand.turning[joint] > demand.gaining[joint]:
+        return (
+            f"{arm.joint_names[joint]} has {damping:g} N·m·s/rad of damping, and its {torque:.0f} N·m cannot turn against that as fast "
+            f"as {joining}What works is {most}, arm.torque_limits_nm, or a file with less damping"
+        )
+    return (
+        f"{arm.joint_names[joint]} moves {arm.mass_matrix[joint, joint]:.3g} kg·m², {arm.model.dof_armature[joint]:.3g} of it "
+        f"armature, and its {torque:.3g} N·m cannot quicken that as fast as {joining}What works is {most}, arm.torque_limits_nm, "
+        f"or a file with less armature"
+    )
+
+
+def _demands(arm: ArmModel, q: Array, task: _Task, scenario: Scenario) -> Iterator[_Demand]:
+    # Along a move, the null space sunk as the controller lets it.
     body, how, way = body_of(arm), sinking(arm, scenario), task.end - task.start
-    q = q.copy()
+    q, still = q.copy(), np.zeros(arm.joints)
     for k, u in enumerate(FRACTIONS):
-        s, rate, _ = septic(float(u), task.duration)
+        s, rate, second = septic(float(u), task.duration)
         sink(body, q, task.start + s * way, how, ON_THE_WAY if k else AT_ONCE)
-        arm.update(q, np.zeros(arm.joints))
-        speeds = np.abs(joint_speeds(arm, rate * way))
-        taken = np.abs(arm.gravity + task.weight * arm.jacobian[2]) + arm.friction
-        if task.follows:
-            taken += arm.damping * following(arm, scenario.bounds.uav_speed_mps)
-        left = np.maximum(TORQUE * arm.tau_max - taken, LEAST * arm.tau_max)
-        yield np.array([speeds / (scenario.limits.joint_speed_share * arm.qd_max), arm.damping * speeds / left])
+        arm.update(q, still)
+        qd = joint_speeds(arm, rate * way)
+        yield _Demand(
+            speed=np.abs(qd),
+            held=np.abs(arm.gravity + task.weight * arm.jacobian[2]) + arm.friction,
+            following=_following_torque(arm, scenario) if task.follows else still,
+            turning=arm.damping * np.abs(qd),
+            gaining=_gaining(arm, q, qd, second * way, task.weight),
+        )
+
+
+def _following_torque(arm: ArmModel, scenario: Scenario) -> Array:
+    # What it takes to go as fast as the UAV, and to gain speed as fast as station keeping brakes it (n,), N·m.
+    speed = scenario.bounds.uav_speed_mps
+    gained = [
+        arm.mass_matrix @ joint_speeds(arm, speed * scenario.control.station.k_velocity * axis) for axis in np.eye(3)
+    ]
+    return np.asarray(arm.damping * following(arm, speed) + np.linalg.norm(gained, axis=0))
+
+
+def _gaining(arm: ArmModel, q: Array, qd: Array, acceleration: Array, weight: float) -> Array:
+    # M q̈ + C q̇ with the UAV's mass at the end effector (n,), N·m; the arm is left with 𝒥̇q̇ evaluated.
+    arm.update(q, qd)
+    arm.refresh(velocity_terms=True)
+    mass = weight / float(np.linalg.norm(arm.model.opt.gravity))
+    bias = arm.state["acceleration_bias"][0]
+    qdd = _least(arm, np.append(acceleration, np.zeros(3)) - bias)
+    return np.abs(arm.mass_matrix @ qdd + arm.state["coriolis"][0] + mass * arm.jacobian[:3].T @ acceleration)
 
 
 def following(arm: ArmModel, speed: float) -> Array:
@@ -132,8 +194,12 @@ def following(arm: ArmModel, speed: float) -> Array:
 
 def joint_speeds(arm: ArmModel, velocity: Array) -> Array:
     """Joint speeds of least length (n,), rad/s, that move the end effector at `velocity` (3,), m/s, in the arm's present pose."""
+    return _least(arm, np.append(velocity, np.zeros(3)))
+
+
+def _least(arm: ArmModel, twist: Array) -> Array:
     J = arm.jacobian
-    return np.asarray(J.T @ np.linalg.solve(J @ J.T + 1e-9 * np.eye(6), np.append(velocity, np.zeros(3))))
+    return np.asarray(J.T @ np.linalg.solve(J @ J.T + 1e-9 * np.eye(6), twist))
 
 
 def downwards(arm: ArmModel, home: Array, speeds: Array) -> float:

@@ -56,6 +56,9 @@ STARTS, BRANCHES, ALIKE_RAD = 150, 10, 0.4
 SCATTERED = 12
 """Poses from anywhere that are tried where the centres lead to no place."""
 
+SAME_RAD = 0.02
+"""Poses in which the arm waits for one catch that differ by less lead to the same."""
+
 ENOUGH = 25
 """Nodes after which no further branch is looked at."""
 
@@ -108,7 +111,7 @@ def places(bench: Bench, keep: frozenset[str]) -> Iterator[list[Place]]:
 
 
 def everywhere(bench: Bench) -> list[Place]:
-    """All places of all headings that are found from all branches: slower than `places`, which ends when it has enough."""
+    """All places of all headings from all branches: slower than `places`, which ends when it has enough."""
     return [place for heading, apart in TRIED for place in _along(bench, heading, frozenset(), apart, int(1e9))]
 
 
@@ -123,13 +126,14 @@ class _Search(NamedTuple):
     grid: "_Grid"
     body: Body
     how: Sinking
+    barren: dict[bytes, list[Array]]  # Catch -> poses (n,), rad, of the arm that waits, which lead to nothing
 
 
 def _along(
     bench: Bench, heading: float, keep: frozenset[str], apart: tuple[float, float] | None, enough: int = ENOUGH
 ) -> list[Place]:
-    search = _Search(bench, _Grid(bench, heading, keep, apart), body_of(bench.arm), sinking(bench.arm, bench.scenario))
-    found: dict[_Node, Place] = {}
+    grid, how = _Grid(bench, heading, keep, apart), sinking(bench.arm, bench.scenario)
+    search, found = _Search(bench, grid, body_of(bench.arm), how, {}), dict[_Node, Place]()
     # Poses from anywhere are slower, and tell nothing new of an arm that reaches the centres: the first that leads to places will do.
     for branches, plenty in ((_branches, enough), (_scattered, 1)):
         for q in branches(search) if not found else ():
@@ -247,34 +251,36 @@ def _filled(search: _Search, q: Array) -> Iterator[tuple[_Node, Place]]:
         place = _judged(search, catch, there)
         if place is not None:
             yield node, place
-        for axis in range(3):
-            for way in (-1, 1):
-                after = (node[0] + way * (axis == 0), node[1] + way * (axis == 1), node[2] + way * (axis == 2))
-                if after not in seen:
-                    seen.add(after)
-                    waiting.append((after, there))
+        i, j, k = node
+        around = ((i - 1, j, k), (i + 1, j, k), (i, j - 1, k), (i, j + 1, k), (i, j, k - 1), (i, j, k + 1))
+        waiting += [(after, there) for after in around if after not in seen]
+        seen.update(around)
 
 
 def _judged(search: _Search, catch: Array, q: Array) -> Place | None:
-    # A place by the corners of its way: where the arm waits, the catch's box, above and below the cradle.
+    # By the corners of its way: where the arm waits, the catch's box, above and below the cradle. Branches meet: none is tried again.
     s, grid, up = search.bench.scenario, search.grid, np.array([0.0, 0.0, 1.0])
     put_down, error = catch + grid.apart, s.bounds.uav_error_m
-    search.bench.obstacles.put_cradle(put_down, grid.heading)
     out, below = error * grid.frame[:, 0], catch - s.place.wait_below_m * up
     lowest = put_down - max(s.place.withdraw_m, s.place.search_m) * up
     aside = (0.5 * (s.cradle.gap_m - s.arm.width_m) - s.control.approach.clearance_m) * grid.frame[:, 1]
     ends = (error * up, out, -out, aside, -aside)
     corners = [Stop(below, catch), Stop(lowest, put_down), *(Stop(catch + p, catch + p, AT_THE_ENDS_M) for p in ends)]
     corners += [Stop(p, p) for p in (catch, put_down + s.place.above_m * up)]
-    merit, home = np.inf, q
+    merit, home, known = np.inf, q, search.barren.setdefault(catch.tobytes(), [])
     for k, (point, pivot, slack) in enumerate(corners):
         there = q.copy()
-        if not sink(search.body, there, point, search.how, AT_ONCE // 4):
-            return None
-        one = _merit(search.bench, there, Stop(point, pivot, slack))
+        reaches = sink(search.body, there, point, search.how, AT_ONCE // 4)
+        if k == 0:
+            if not reaches or any(np.abs(there - other).max() < SAME_RAD for other in known):
+                return None
+            search.bench.obstacles.put_cradle(put_down, grid.heading)
+            home = there
+        one = _merit(search.bench, there, Stop(point, pivot, slack)) if reaches else None
         if one is None:
+            known.append(home)
             return None
-        merit, home = min(merit, one), there if k == 0 else home
+        merit = min(merit, one)
     return Place(
         catch, put_down, grid.heading, home, merit - search.bench.nearness * float(np.linalg.norm(catch - grid.wanted))
     )

@@ -12,6 +12,9 @@ from numba import njit
 PEAK = 2.1875
 """Largest rate of s over its mean: 35/16."""
 
+SWELL = 16.8 / 5.0**0.5
+"""Largest second derivative of s by u, at u = (5 − √5)/10."""
+
 
 @njit(cache=True)
 def septic(u: float, duration: float) -> tuple[float, float, float]:

@@ -8,7 +8,7 @@ import numpy as np
 from armland.errors import ModelError
 from armland.models.arm_file.inertia import NOTHING, lumped
 from armland.models.arm_file.tip import NEEDED, Tip, tip
-from armland.models.arm_file.tree import HINGE, SLIDE, Body, Inertial, Joint, Pose, Shape, Tree, here
+from armland.models.arm_file.tree import HINGE, SLIDE, Body, Inertial, Joint, Mesh, Pose, Shape, Tree, here
 from armland.rotations import matrix
 
 WEIGHTY = 0.05
@@ -23,6 +23,7 @@ class Link(NamedTuple):
     joints: tuple[Joint, ...]  # driven
     inertial: Inertial | None
     shapes: tuple[Shape, ...]
+    meshes: tuple[Mesh, ...] = ()
 
 
 class Chain(NamedTuple):
@@ -58,12 +59,20 @@ def chain(tree: Tree, ee: str | None, lock: dict[str, float]) -> Chain:
     driven = _driven(tree, way, lock, end)
     still = {j.name: _rest(tree, j, lock) for j in tree.joints() if j.name not in driven}
     carrier, at, owns = _carried(tree, way, driven, still)
+    gripper = _gripper(tree, [i for i, c in enumerate(carrier) if c == len(owns) - 1], owns[-1].body)
     links = []
     for number, own in enumerate(owns):
         members = [i for i in range(len(tree.bodies)) if carrier[i] == number]
-        links.append(_link(tree, members, at, own))
+        link = _link(tree, members, at, own)
+        links.append(link._replace(meshes=tuple(m for m in link.meshes if m.of not in gripper)))
     ee_pose = at[end.body].then(end.pose)
     notes = (*tree.notes, *end.notes, *_told(tree, way, driven, still, lock, end))
+    drawn = [b.name for b in tree.bodies if b.name in gripper and b.meshes]
+    if drawn:
+        notes = (
+            *notes,
+            f"the meshes of the gripper are not looked at, as the tool takes its place: {', '.join(drawn)}",
+        )
     return Chain(tree.what, tree.form, tuple(links), end, ee_pose, notes)
 
 
@@ -183,6 +192,17 @@ def _base(tree: Tree, way: list[int], driven: set[str]) -> int:
     return tree.bodies[moving].parent
 
 
+def _gripper(tree: Tree, members: list[int], last: int) -> set[str]:
+    # Names of what hangs on the last link and has joints of its own: its fingers, and the hand that carries them.
+    out: set[int] = set()
+    for i in members:
+        if any(j.driven for j in tree.bodies[i].joints) and i != last:
+            hand = tree.bodies[i].parent
+            root = hand if hand in members and hand != last else i
+            out |= {k for k in members if root in tree.way(k)}
+    return {tree.bodies[k].name for k in out}
+
+
 def _link(tree: Tree, members: list[int], at: list[Pose], own: _Own) -> Link:
     bodies = tree.bodies
     parts = [(i, at[m]) for m in members if (i := bodies[m].inertial) is not None]
@@ -190,7 +210,8 @@ def _link(tree: Tree, members: list[int], at: list[Pose], own: _Own) -> Link:
     if own.joints:
         _check_mass(tree, members, own)
     shapes = tuple(s._replace(pose=at[m].then(s.pose), of=bodies[m].name) for m in members for s in bodies[m].shapes)
-    return Link(name, own.pose, own.joints, lumped(parts), shapes)
+    meshes = tuple(x._replace(pose=at[m].then(x.pose), of=bodies[m].name) for m in members for x in bodies[m].meshes)
+    return Link(name, own.pose, own.joints, lumped(parts), shapes, meshes)
 
 
 def _check_mass(tree: Tree, members: list[int], own: _Own) -> None:

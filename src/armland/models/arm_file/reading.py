@@ -83,7 +83,7 @@ def read_tree(path: Path, kind: str = "arm file") -> Tree:
     what = f"{kind} {str(path)!r}"
     root = read_root(path, what)
     if root.tag == "robot":
-        return read_urdf(root, what)
+        return read_urdf(root, path, what)
     if root.tag == "mujoco":
         return read_mjcf(root, path, what)
     hint = "; that is SDF: export URDF or MJCF" if root.tag == "sdf" else ""

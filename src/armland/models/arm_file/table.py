@@ -12,7 +12,7 @@
 What holds the arm is the worst over its poses, for whatever direction its base is mounted in.
 
 A limit is never taken as zero or infinite because the file does not name it. Files use 0, 1e4 N·m and more, and speeds below
-0.01 or above 50 rad/s as placeholders: those are no limits either.
+0.01 or above 50 rad/s as placeholders, and torques that are all 1: those are no limits either.
 """
 
 from collections.abc import Callable, Sequence
@@ -108,7 +108,7 @@ def table(chain: Chain, asked: Asked, demand: Callable[[list[Row]], tuple[Array,
             Row(j.name, j.kind, low, high, speed, torque, rate, j.friction or nothing, j.damping or nothing, armature)
         )
     if _commands(rows):
-        # Commands from -1 to 1 are shares of a torque that the file does not say.
+        # Commands from -1 to 1 are shares of a torque that the file does not say; programs that draw URDF write 1 for all.
         rows = [r._replace(torque=Value(0.0, RULE)) for r in rows]
     if any(r.torque.number == 0.0 for r in rows):
         rows = _with_torque(rows, chain, *demand(rows))
@@ -179,7 +179,7 @@ def _armature(chain: Chain, asked: float | None) -> Value:
 
 
 def _commands(rows: list[Row]) -> bool:
-    return all(r.torque == Value(1.0, "actuator") for r in rows)
+    return all(r.torque.number == 1.0 and r.torque.source != OPTION for r in rows)
 
 
 def _with_torque(rows: list[Row], chain: Chain, own: Array, lever: Array) -> list[Row]:

@@ -100,6 +100,16 @@ class Shape(NamedTuple):
     of: str = ""  # body of the file that it belongs to
 
 
+class Mesh(NamedTuple):
+    """A file of triangles that a body looks like or is touched at. Nobody who plans or flies opens it."""
+
+    file: str  # as it is found beside the robot's file; it need not be there
+    scale: Array  # (3,)
+    pose: Pose
+    touches: bool = True  # whether the file means it for contact
+    of: str = ""  # body of the file that it belongs to
+
+
 class Body(NamedTuple):
     """A body, or a link with the joint to its parent."""
 
@@ -110,6 +120,7 @@ class Body(NamedTuple):
     inertial: Inertial | None
     shapes: tuple[Shape, ...] = ()
     complaint: str = ""  # why its inertia cannot be used
+    meshes: tuple[Mesh, ...] = ()
 
 
 class Frame(NamedTuple):

@@ -3,7 +3,7 @@
 import pytest
 
 from armland.errors import ModelError
-from armland.models.arm_file.formats.text import declared, numbers, read_root, refuse_xacro
+from armland.models.arm_file.formats.text import declared, mesh_file, numbers, read_root, refuse_xacro
 
 
 @pytest.fixture
@@ -78,3 +78,21 @@ def test_numbers_are_finite_and_as_many_as_wanted():
     for text in ("1 2", "one", "nan", "1e999"):
         with pytest.raises(ModelError, match=r"link 'l': mass = .* should be 1 finite number"):
             numbers(text, 1, (), "link 'l': mass")
+
+
+@pytest.mark.parametrize(
+    ("name", "at"),
+    [
+        ("meshes/a.stl", "robots/arm/urdf/meshes/a.stl"),
+        ("../meshes/a.stl", "robots/arm/urdf/../meshes/a.stl"),
+        ("file://meshes/a.stl", "robots/arm/urdf/meshes/a.stl"),
+        ("package://arm/meshes/a.stl", "robots/arm/meshes/a.stl"),
+        ("package://other/meshes/a.stl", "robots/arm/meshes/a.stl"),
+        ("package://arm/meshes/gone.stl", "robots/arm/urdf/meshes/gone.stl"),
+    ],
+)
+def test_mesh_is_looked_for_beside_its_file_and_upwards(tmp_path, name, at):
+    for folder in ("robots/arm/urdf", "robots/arm/meshes"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "robots/arm/meshes/a.stl").write_text("")
+    assert mesh_file(name, tmp_path / "robots/arm/urdf/arm.urdf") == str(tmp_path / at)

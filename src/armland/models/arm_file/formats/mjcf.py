@@ -15,6 +15,7 @@ import numpy as np
 
 from armland.errors import ModelError
 from armland.models.arm_file.formats import actuators
+from armland.models.arm_file.formats.marks import MARK, Mark, mark, meshes
 from armland.models.arm_file.formats.text import included, numbers
 from armland.models.arm_file.inertia import NOTHING, extended, impossible, lacking, principal
 from armland.models.arm_file.tree import CLASS, FILE, Body, Frame, Inertial, Joint, Kind, Pose, Shape, Tree, Value, here
@@ -59,9 +60,9 @@ def read_mjcf(root: ET.Element, path: Path, what: str) -> Tree:
     """
     root = included(root, path, what)
     own = _own(root, what)
-    model, complaints = _compiled(_robot(root), path, what)
+    model, complaints, marks = _compiled(_robot(root), path, what)
     written = {j.get("name", ""): j for j in root.iter("joint")}
-    bodies = tuple(_body(model, i, complaints) for i in range(1, model.nbody))
+    bodies = tuple(_body(model, i, complaints)._replace(meshes=meshes(model, i, marks)) for i in range(1, model.nbody))
     joints = _joints(model, written, own)
     bodies = tuple(b._replace(joints=tuple(joints[i + 1])) for i, b in enumerate(bodies))
     frames = [Frame(b.name, i, here()) for i, b in enumerate(bodies)]
@@ -106,18 +107,18 @@ def _robot(root: ET.Element) -> ET.Element:
     return out
 
 
-def _compiled(root: ET.Element, path: Path, what: str) -> tuple[mujoco.MjModel, dict[str, str]]:
+def _compiled(root: ET.Element, path: Path, what: str) -> tuple[mujoco.MjModel, dict[str, str], dict[str, Mark]]:
     try:
         spec = parsed(root)
         spec.modelfiledir = str(path.parent)
-        complaints = _drop_meshes(spec, path)
+        marks, complaints = mark(spec, path), _drop_meshes(spec, path)
         c = spec.compiler
         c.fusestatic, c.discardvisual, c.settotalmass = False, False, -1.0
         c.boundmass, c.boundinertia = max(c.boundmass, TINY), max(c.boundinertia, TINY)
         if not c.balanceinertia:
             complaints |= _balance(spec)
         actuators.forget_lengths(spec)
-        return spec.compile(), complaints
+        return spec.compile(), complaints, marks
     except (ValueError, mujoco.FatalError) as e:
         raise ModelError(f"{what} cannot be read: {' '.join(str(e).split())}") from e
 
@@ -228,7 +229,7 @@ def _body(model: mujoco.MjModel, i: int, complaints: dict[str, str]) -> Body:
 
 def _shape(model: mujoco.MjModel, g: int) -> Shape | None:
     kind = SOLIDS.get(int(model.geom_type[g]))
-    if kind is None:
+    if kind is None or model.geom(g).name.startswith(MARK):
         return None
     material = int(model.geom_matid[g])
     rgba, gloss = model.geom_rgba[g].astype(float), (0.5, 0.5)

@@ -127,3 +127,19 @@ def numbers(text: str | None, count: int, default: tuple[float, ...], where: str
     if len(found) != count or any(x != x or abs(x) == float("inf") for x in found):
         raise ModelError(f"{where} = {text[:60]!r} should be {count} finite number{'s' * (count > 1)}")
     return found
+
+
+def mesh_file(name: str, path: Path) -> str:
+    """Where the file lies that a robot's file at `path` calls `name`; where it should lie if it is nowhere.
+
+    `package://PACKAGE/...` is looked for upwards: beside the folder of the package, in it, and wherever the rest of the name leads to.
+    """
+    scheme, _, rest = name.rpartition("://")
+    if scheme not in ("package", "model"):
+        return str(path.parent / rest)
+    inner = rest.partition("/")[2]
+    for folder in path.resolve().parents:
+        for found in (folder / rest, folder / inner):
+            if found.is_file():
+                return str(found)
+    return str(path.parent / inner)

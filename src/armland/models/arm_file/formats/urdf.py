@@ -1,16 +1,17 @@
-"""URDF into a `Tree`: links, joints, limits and primitive shapes; transmissions, plug-ins, sensors and meshes are left behind.
+"""URDF into a `Tree`: links, joints, limits, primitive shapes, places of meshes; transmissions, plug-ins, sensors are left behind.
 
 What the format means by silence is not what a robot has: a `<limit>` without effort or velocity, or with 0, says nothing of them,
 and a revolute joint whose ends are both 0 says nothing of its range.
 """
 
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import mujoco
 import numpy as np
 
 from armland.errors import ModelError
-from armland.models.arm_file.formats.text import numbers, refuse_xacro
+from armland.models.arm_file.formats.text import mesh_file, numbers, refuse_xacro
 from armland.models.arm_file.inertia import extended, impossible, lacking, principal, raised
 from armland.models.arm_file.tree import (
     BALL,
@@ -22,6 +23,7 @@ from armland.models.arm_file.tree import (
     Frame,
     Inertial,
     Joint,
+    Mesh,
     Pose,
     Shape,
     Tree,
@@ -41,11 +43,12 @@ KINDS = {
 GREY = (0.7, 0.72, 0.75, 1.0)
 
 
-def read_urdf(root: ET.Element, what: str) -> Tree:
+def read_urdf(root: ET.Element, path: Path, what: str) -> Tree:
     """The robot of a URDF.
 
     Args:
         root: its `<robot>`.
+        path: of the file; meshes stand near it.
         what: its name in messages.
 
     Raises:
@@ -69,7 +72,10 @@ def read_urdf(root: ET.Element, what: str) -> Tree:
     order, bodies = _order(links, into, what), []
     number = {name: i for i, name in enumerate(order)}
     for name in order:
-        bodies.append(_body(name, links[name], into.get(name), number, (what, balance)))
+        body = _body(name, links[name], into.get(name), number, (what, balance))
+        bodies.append(
+            body._replace(meshes=tuple(m for e in links[name] for m in _mesh(e, path, f"{what}: link {name!r}")))
+        )
     frames = tuple(Frame(b.name, i, here()) for i, b in enumerate(bodies))
     return Tree(what, "URDF", tuple(bodies), frames, ())
 
@@ -229,6 +235,15 @@ def _shape(part: ET.Element, where: str) -> list[Shape]:
         if half is not None and half[1].max() > 0.0:
             return [Shape(half[0], half[1], at, rgba, touches=touches)]
     return []
+
+
+def _mesh(part: ET.Element, path: Path, where: str) -> list[Mesh]:
+    mesh = part.find("geometry/mesh") if part.tag in ("visual", "collision") else None
+    name = mesh.get("filename") if mesh is not None else None
+    if mesh is None or not name:
+        return []
+    scale = np.array(numbers(mesh.get("scale"), 3, (1.0, 1.0, 1.0), f"{where}: scale of a mesh"))
+    return [Mesh(mesh_file(name, path), scale, _pose(part.find("origin"), where), part.tag == "collision")]
 
 
 def _colour(text: str | None) -> np.ndarray:
