@@ -79,6 +79,18 @@ def test_a_fault_is_foreseen_thrown_in_and_its_outcome_told(console, wait_until)
     assert [m.do for m in read_script(console.pilot.log)] == ["fault"]
 
 
+def test_the_next_flight_stands_in_the_scene_of_the_last(console, wait_until) -> None:
+    press(console, "times real time", "as fast as it goes")
+    press(console, "flight", "start")
+    assert wait_until(lambda: console._flight is not None and console.pilot.log is not None, SECONDS)
+    first, stage, poses = console._flight, console._stage, console._stage.poses
+    press(console, "seed", "next seed")
+    assert wait_until(lambda: console._flight is not first, SECONDS)
+    assert wait_until(lambda: console._stage.poses is not poses)
+    assert console._stage is stage
+    assert console._number == 1
+
+
 @pytest.mark.slow
 def test_held_by_space_and_aborted_by_escape(console, wait_until) -> None:
     commands = {c.hotkey: c for c in console.gui._command_handle_from_uuid.values()}
