@@ -1,5 +1,6 @@
 """The frames of a scene's bodies in the browser: each is told where it is when it has moved, since a message costs the page time."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,9 @@ class Frames:
 
     def __contains__(self, body: int) -> bool:
         return body in self._nodes
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._nodes)
 
     def __getitem__(self, body: int) -> Any:
         return self._nodes[body]
