@@ -3,7 +3,8 @@
 Run: .venv/bin/python benchmarks/console.py [SECONDS [SECONDS]]
 
 Cost: landings as fast as they go, in one process, for half a second each without a console and with one that shows them to a page
-at 30 Hz. On a machine that does other things as well its best quarter of blocks says more than their middle.
+at 30 Hz. On a machine that does other things as well its best quarter of blocks says more than their middle, and the processor's
+time says more than the clock: that of the thread that flies, for each tick, and that which the console's thread takes beside it.
 Pages: for SECONDS at real time five pages, in a process of their own, open, read or hang, send nonsense, and close.
 """
 
@@ -94,6 +95,25 @@ def child(address: str, seconds: float, count: int, restless: bool) -> subproces
     )
 
 
+def clocks() -> tuple[float, float]:
+    """Now, s, and the processor's time that this thread has had, s."""
+    return time.perf_counter(), time.thread_time()
+
+
+def report(blocks: dict[bool, list[list[float]]], worked: list[float]) -> None:
+    """Print what blocks cost without and with a console, s a tick by both clocks, and what share of its time the console worked."""
+    for i, clock in enumerate(("clock", "processor")):
+        without, shown = (np.quantile([b[i] for b in blocks[on]], (0.25, 0.5)) for on in (False, True))
+        for name, (low, middle) in (("without", without), ("with", shown)):
+            print(
+                f"{clock:9s} {name:7s} a console: {1e6 * low:.1f} µs a tick in the best quarter, {1e6 * middle:.1f} µs in the middle"
+            )
+        low, middle = 100.0 * (shown / without - 1.0)
+        print(f"{clock:9s} cost: {low:+.1f} % in the best quarter, {middle:+.1f} % in the middle")
+    print(f"blocks: {len(blocks[False])} without, {len(blocks[True])} with a console")
+    print(f"the console works {100 * worked[1] / worked[0]:.1f} % of its time")
+
+
 class Bench:
     def __init__(self, folder: Path) -> None:
         scenario = load_scenario("landing")
@@ -114,15 +134,20 @@ class Bench:
         self.pilot.pace.set(None)
         server = PageServer("127.0.0.1", 0, None, "bench")
         console, over = Console(server, self.pilot, Choices()), threading.Event()
-        blocks, last = {False: [], True: []}, [0.0]
+        blocks, last, worked = {False: [], True: []}, [(0.0, 0.0)], [0.0, 0.0]
         there, leave = [False], Steered._leave
 
         def timed(flight: Steered, controller, rows) -> None:
-            now = time.perf_counter()
+            now = clocks()
             if flight.tick > 1000 and len(rows) == 250:
-                blocks[there[0]].append((now - last[0]) / len(rows))
+                blocks[there[0]].append([(b - a) / len(rows) for a, b in zip(last[0], now, strict=True)])
             leave(flight, controller, rows)
-            last[0] = time.perf_counter()
+            last[0] = clocks()
+
+        def show() -> None:
+            before = clocks()
+            console.run()
+            worked[:] = (a + b - c for a, b, c in zip(worked, clocks(), before, strict=True))
 
         def turns() -> None:
             while not over.is_set():
@@ -131,7 +156,7 @@ class Bench:
                     over.wait(SLICE_S)
                     continue
                 console._closed.clear()
-                thread = threading.Thread(target=console.run)
+                thread = threading.Thread(target=show)
                 thread.start()
                 over.wait(SLICE_S)
                 console.close()
@@ -152,14 +177,7 @@ class Bench:
         reader.kill()
         reader.wait()
         server.stop()
-        without, shown = (np.sort(1e6 * np.array(blocks[on])) for on in (False, True))
-        for name, found in (("without", without), ("with", shown)):
-            low, middle = np.quantile(found, (0.25, 0.5))
-            print(
-                f"{name:8s} a console: {len(found)} blocks, {low:.1f} µs a tick in the best quarter, {middle:.1f} µs in the middle"
-            )
-        low, middle = (np.quantile(shown, q) / np.quantile(without, q) - 1.0 for q in (0.25, 0.5))
-        print(f"cost: {100 * low:+.1f} % in the best quarter, {100 * middle:+.1f} % in the middle")
+        report(blocks, worked)
 
     def disturb(self, seconds: float) -> None:
         gaps: list[float] = []

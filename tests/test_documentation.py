@@ -1,8 +1,12 @@
 """What the documents show is run, and what they name is there."""
 
+import importlib.util
 import pkgutil
 import re
 import shlex
+import signal
+import subprocess
+import sys
 from functools import reduce
 from itertools import pairwise
 from pathlib import Path
@@ -79,7 +83,22 @@ def command_lines(shell: str) -> list[str]:
 
 def briefly(call: str) -> list[str]:
     """Its arguments, with two flights where it asks for a campaign: that they are many is tested elsewhere."""
-    return shlex.split(re.sub(r"(--seeds|--spread) \d+", r"\1 2", call))[1:]
+    return shlex.split(re.sub(r"(--seeds|--spread|--runs) \d+", r"\1 2", call))[1:]
+
+
+def written(shell: str) -> list[tuple[str, str]]:
+    """Name and text of each file that a block for a shell writes."""
+    return re.findall(r"^cat > (\S+) <<'END'\n(.*?)^END$", shell, re.DOTALL | re.MULTILINE)
+
+
+def serve(call: str) -> None:
+    """Run a command that serves a page until somebody ends it; end it when it has said where the page is."""
+    command = [sys.executable, "-m", "armland", *briefly(call), "--no-browser", "--port", "0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as run:
+        line = run.stdout.readline()
+        run.send_signal(signal.SIGINT)
+        assert "http://localhost:" in line, call
+        assert run.wait(timeout=60) in (0, 130)
 
 
 def says(text: str, output: str) -> bool:
@@ -97,7 +116,14 @@ def test_page_does_what_it_says(page: Path, workplace, armland) -> None:
             run_snippet(text)
         if language == "sh":
             output = ""
+            for name, content in written(text):
+                (workplace / name).write_text(content, encoding="utf-8")
             for call in command_lines(text):
+                if call.startswith(("armland console", "armland replay")):
+                    serve(call)
+                    continue
+                if "--ray" in call and importlib.util.find_spec("ray") is None:
+                    continue
                 done = armland(*briefly(call))
                 assert done.code in (0, 1) or (following == "text" and done.code == 2), f"{call}\n{done.err}"
                 # Progress and notes come before the verdict.
@@ -129,6 +155,13 @@ def test_campaigns_of_pages_are_flown_briefly() -> None:
     assert briefly("armland land --seed 90001 --seeds 1000 --set 'a=[1, 2]'") == [
         *("land", "--seed", "90001", "--seeds", "2", "--set", "a=[1, 2]"),
     ]
+    assert briefly("armland campaign a.toml --runs 50 --resume") == ["campaign", "a.toml", "--runs", "2", "--resume"]
+
+
+def test_files_that_a_block_writes_are_found() -> None:
+    block = "cat > a.jsonl <<'END'\n{1}\n{2}\nEND\narmland run landing --operator a.jsonl\n"
+    assert written(block) == [("a.jsonl", "{1}\n{2}\n")]
+    assert command_lines(block) == ["armland run landing --operator a.jsonl"]
 
 
 TARGETS = re.findall(r"^(\w+):.*## ", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)

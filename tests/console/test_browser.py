@@ -68,6 +68,10 @@ class View:
         """Wait for one of the phases."""
         self.page.locator(", ".join(f'[data-phase="{name}"]' for name in names)).first.wait_for()
 
+    def passed(self, name: str) -> None:
+        """Wait until a phase has been flown, or is: a page that is drawn late may never show it as the one in progress."""
+        self.page.locator("[data-phase]").filter(has_text=name).first.wait_for()
+
     def press(self, name: str) -> None:
         self.page.get_by_role("button", name=name, exact=True).first.click()
 
@@ -188,7 +192,7 @@ def test_a_landing_is_steered_and_scrubbed_through(browser, log_file, tmp_path) 
         view.phase("done")
         view.slider("time").press("Home")
         view.key("Space")
-        view.phase("guide")
+        view.passed("guide")
         view.picture("played")
         assert view.errors == []
         view.page.close()
@@ -266,7 +270,7 @@ def test_a_landing_is_started_steered_and_looked_at_again(browser, tmp_path) -> 
         view.sees("the operator aborted it")
         view.page.wait_for_function("document.querySelector('[data-command]').textContent.includes('--operator')")
         view.press("copy the command that does this again")
-        view.sees("copied")
+        view.page.wait_for_function("async () => (await navigator.clipboard.readText()).includes('--operator')")
         copied = view.page.evaluate("navigator.clipboard.readText()")
         assert copied == view.page.locator("[data-command]").inner_text()
         assert view.errors == []
@@ -300,7 +304,7 @@ def test_a_replay_is_scrubbed(browser, flown) -> None:
         view.phase("carry")
         view.picture("carry")
         view.key("Space")
-        view.phase("set_down")
+        view.passed("set down")
         view.key("l")
         view.key("Space")
         view.picture("dark")

@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 
-from armland.mission.plan import plan
-from armland.mission.registry import MISSIONS
+from armland.mission.plan import Plan, plan
+from armland.mission.registry import MISSIONS, UNAIDED, mission_named
 from armland.mission.table.mission import Mission
 from armland.mission.table.phases import KINDS, SIGNALS, Guard, Phase
+from armland.mission.unaided.plan import UnaidedPlan, unaided_plan
 from armland.scenario import Scenario, load_scenario
+from pages.unaided import phase_table
 
 YES_OR_NO = ("uav_seen", "contact", "magnet_ready", "magnet_fault", "bias_known")
 STARTS = {
@@ -21,18 +23,28 @@ SHARES = {
     "test": "ramp to the weight and a pull that tests the grip",
 }
 
+BY_ITSELF = (
+    "No supervisor looks for faults in it: what a fault leads to is a matter of the arm's missions. How it compares with landing by "
+    "the arm is in [methods.md](../methods.md).",
+    "",
+)
+
 
 def mission_markdown(name: str, scenario: Scenario, experiment: str | None = None) -> str:
     """The page of a mission as Markdown, with the numbers of a scenario."""
-    mission = MISSIONS[name]
-    planned = plan(scenario, name, experiment=experiment)
+    mission, by_itself = mission_named(name), name in UNAIDED
+    planned: Plan | UnaidedPlan = (
+        unaided_plan(scenario, name) if by_itself else plan(scenario, name, experiment=experiment)
+    )
+    options = f" {scenario_of(mission)}" if by_itself or experiment else ""
+    options += f" --experiment {experiment}" if experiment else ""
     parts = [
         f"# {name}: {mission.summary}",
         "",
         f"Made from `mission/missions/` by `make pages`, with the numbers of the scenario `{scenario_of(mission)}`.",
         "",
         "```sh",
-        f"armland run {name}{f' {scenario_of(mission)} --experiment {experiment}' if experiment else ''}",
+        f"armland run {name}{options}",
         "```",
         "",
         f"It begins with the UAV {STARTS[mission.start]}.",
@@ -41,12 +53,9 @@ def mission_markdown(name: str, scenario: Scenario, experiment: str | None = Non
         "",
         "## Phases",
         "",
-        "| phase | kind | arm | UAV | magnet | ends when | or after |",
-        "|---|---|---|---|---|---|---|",
-        *(_phase(p, planned.thresholds) for p in planned.phases if not p.final),
-        "",
+        *(phase_table(planned) if isinstance(planned, UnaidedPlan) else _phases(planned)),
         *_timeouts(mission),
-        *_faults(mission, planned.phases),
+        *(BY_ITSELF if by_itself else _faults(mission, planned.phases)),
         *_criteria(mission, planned.phases),
         "## Keys of the scenario",
         "",
@@ -58,6 +67,8 @@ def mission_markdown(name: str, scenario: Scenario, experiment: str | None = Non
 
 def scenario_of(mission: Mission) -> str:
     """Name of the scenario whose numbers a mission's page shows."""
+    if mission.name in UNAIDED:
+        return mission.name
     if mission.start != "hinged":
         return "landing"
     return "paper" if mission.experiment else "compare"
@@ -65,10 +76,16 @@ def scenario_of(mission: Mission) -> str:
 
 def pages() -> Iterator[tuple[str, str]]:
     """Name and text of every page."""
-    for name, mission in MISSIONS.items():
+    for name, mission in {**MISSIONS, **UNAIDED}.items():
         scenario = load_scenario(scenario_of(mission))
         row = "observer" if mission.start == "hinged" and mission.experiment is None else None
         yield f"{name}.md", mission_markdown(name, scenario, row)
+
+
+def _phases(planned: Plan) -> Iterator[str]:
+    yield from ("| phase | kind | arm | UAV | magnet | ends when | or after |", "|---|---|---|---|---|---|---|")
+    yield from (_phase(p, planned.thresholds) for p in planned.phases if not p.final)
+    yield ""
 
 
 def _phase(p: Phase, thresholds: dict[str, float]) -> str:
@@ -115,5 +132,6 @@ def _criteria(mission: Mission, phases: tuple[Phase, ...]) -> Iterator[str]:
         yield ""
     touching = [f"`{p.name}`" for p in phases if p.on_cradle and (not p.final or p.name == "done")]
     if touching:
-        yield f"The UAV may touch the cradle in {', '.join(touching)}; in another phase that is a failure."
+        what = "pad" if mission.name in UNAIDED else "cradle"
+        yield f"The UAV may touch the {what} in {', '.join(touching)}; in another phase that is a failure."
         yield ""

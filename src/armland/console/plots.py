@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from viser import GuiApi
 
+from armland.console.page.often import put_curves
 from armland.records import Records
 from armland.rotations import Array
 from armland.view.figures.flight import distance_mm, upward_forces_n
@@ -141,7 +142,7 @@ class Charts:
             lines = list(curves.lines[i])
             if self._two and other is not None:
                 lines += [*other.lines[i], *(a - b for a, b in zip(curves.lines[i], other.lines[i], strict=True))]
-            chart.data = tuple(np.asarray(x, dtype=float) for x in (curves.time, *ground, here, *lines))
+            put_curves(chart, (curves.time, *ground, here, *lines))
 
     def _chart(self, gui: GuiApi, panel: Panel, names: Sequence[str]) -> Any:
         ground: dict[str, Any] = {"scale": "ground", "width": 0, "points": {"show": False}}

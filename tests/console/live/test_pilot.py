@@ -64,20 +64,22 @@ def test_flies_as_the_command_does(pilot, wait_until, landed) -> None:
 
 
 def test_steered_it_flies_again_from_its_log(pilot, wait_until, landing_scenario, known) -> None:
-    pilot.pace.set(None)
+    # Time stands still while messages come, however late they are.
+    pilot.pace.pause(True)
+    pilot.pace.step(2000)
     pilot.start(Choices(seed=2), [asked("noise", 1.5)])
-    assert wait_until(lambda: pilot.flight is not None and pilot.flight.tick > 2000, SECONDS)
-    for message in (asked("wind", 2.5), asked("hold")):
-        pilot.tell(message)
-    assert wait_until(lambda: len(pilot.flight.done) == 3, SECONDS)
-    pilot.tell(asked("resume"))
-    assert wait_until(lambda: len(pilot.flight.done) == 4, SECONDS)
-    pilot.tell(asked("abort"))
+    for tick, message in ((2000, "wind"), (2000, "hold"), (2500, "resume"), (2700, "abort")):
+        assert wait_until(lambda tick=tick: pilot.flight is not None and pilot.flight.tick == tick, SECONDS)
+        done = len(pilot.flight.done)
+        pilot.tell(asked(message, 2.5 if message == "wind" else 0.0))
+        assert wait_until(lambda done=done: len(pilot.flight.done) == done + 1, SECONDS)
+        pilot.pace.step({"hold": 500, "resume": 200}.get(message, 0))
+    pilot.pace.pause(False)
     assert wait_until(lambda: pilot.ended is not None, SECONDS)
     assert "the operator aborted it" in pilot.ended.words
     script = read_script(pilot.log)
     assert [m.do for m in script] == ["noise", "wind", "hold", "resume", "abort"]
-    assert script[0].tick == 0
+    assert [m.tick for m in script] == [0, 2000, 2000, 2500, 2700]
     again = Hand(prepare(landing_scenario, "landing", 2, known=known), script)
     from armland.experiments.episode import fly_prepared
 
@@ -126,12 +128,12 @@ def test_what_pages_need_is_left_behind_whole(pilot, wait_until, landed) -> None
 
 @pytest.mark.slow
 def test_another_flight_takes_the_place_of_the_one_under_way(pilot, wait_until) -> None:
-    pilot.pace.set(1.0)
+    pilot.pace.pause(True)
     pilot.start(Choices(seed=1), [])
     assert wait_until(lambda: pilot.flying, SECONDS)
     first = pilot.flight
-    pilot.pace.set(None)
     pilot.start(Choices(seed=2), [])
+    pilot.pace.pause(False)
     assert wait_until(lambda: pilot.flight is not first and pilot.ended is not None, SECONDS)
     assert first.stopped
     assert pilot.choices.seed == 2
@@ -170,11 +172,12 @@ def test_a_flight_that_cannot_be_is_said_and_the_next_one_flies(pilot, flights, 
 
 @pytest.mark.slow
 def test_given_up_it_leaves_what_was_recorded(pilot, wait_until, tmp_path) -> None:
-    pilot.pace.set(4.0)
+    pilot.pace.pause(True)
+    pilot.pace.step(1200)
     pilot.start(Choices(), [])
-    assert wait_until(lambda: pilot.flight is not None and pilot.flight.tick > 1200, SECONDS)
+    assert wait_until(lambda: pilot.flight is not None and pilot.flight.tick == 1200, SECONDS)
     pilot.stop()
     assert wait_until(lambda: pilot.ended is not None, SECONDS)
     assert pilot.ended.words == "given up"
     (file,) = (tmp_path / "logs").iterdir()
-    assert len(read_log(file).ticks) > 1000
+    assert len(read_log(file).ticks) == 1200

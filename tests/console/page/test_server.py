@@ -130,7 +130,8 @@ def test_a_page_that_reads_nothing_holds_up_nobody(server, fake_page, wait_until
     begin = time.monotonic()
     for number in range(300):
         html.content = f"{number}" + "x" * 20_000
-    assert time.monotonic() - begin < 2.0
+    # A tenth of a second where nothing else goes on; held up it would be for good.
+    assert time.monotonic() - begin < 20.0
     buffered = server.viser._websock_server._broadcast_buffer.message_from_id
     # Of each thing the newest value alone is kept for it.
     assert len(buffered) < 40

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from armland.console.stage.poses import Poses, armless_scene_of, forces_from, rotation, scene_of, to_world
+from armland.console.stage.poses import Poses, armless_scene_of, forces_from, scene_of, to_world, turn_of
 from armland.errors import LogError
 from armland.experiments.episode import fly
 from armland.plant.scene.eye import CAMERA
@@ -49,7 +49,7 @@ def test_the_camera_looks_at_the_marker_in_flight(recording) -> None:
     poses.set(truth)
     place, quat = poses.camera(CAMERA)
     marker = poses._data.geom("uav/marker").xpos
-    along = rotation(quat).apply([0.0, 0.0, 1.0])
+    along = turn_of(quat) @ [0.0, 0.0, 1.0]
     to_marker = (marker - place) / np.linalg.norm(marker - place)
     assert along @ to_marker > 0.9
     assert poses.camera("none of that name") is None
@@ -89,7 +89,7 @@ def test_damaged_numbers_are_no_picture_and_no_crash(recording) -> None:
     tick["truth"]["hinge_force"] = np.inf
     poses.set(tick["truth"][0])
     assert forces_from(tick["truth"][0]).tolist() == [0.0, 0.0, 0.0]
-    np.testing.assert_array_equal(rotation(np.zeros(4)).as_matrix(), np.eye(3))
+    np.testing.assert_array_equal(turn_of(np.zeros(4)), np.eye(3))
 
 
 def test_points_of_the_deck_in_the_world(recording) -> None:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from armland.console.stage.shapes import meshes_of, triangles
+from armland.console.stage.shapes import look_of, meshes_of, triangles
 from armland.plant.scene.composition import build_scene
 from armland.scenario import load_scenario
 
@@ -56,6 +56,30 @@ def test_a_shape_has_its_volume_and_lies_about_its_middle(model, name: str, volu
     if extents is not None:
         np.testing.assert_allclose(made.extents, extents, rtol=0.02)
         np.testing.assert_allclose(made.bounds.sum(axis=0), 0.0, atol=1e-9)
+
+
+def test_a_shape_is_made_once_and_nobody_can_change_it(model) -> None:
+    ball = model.geom("sphere").id
+    made = triangles(model, ball)
+    assert triangles(mujoco.MjModel.from_xml_string(SHAPES), ball)[0] is made[0]
+    with pytest.raises(ValueError, match="read-only"):
+        made[0][0] = 0.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('size="0.1 0.2 0.3"', 'size="0.1 0.2 0.4"'),
+        ('rgba="1 0 0 1"', 'rgba="1 0 1 1"'),
+        ('0 0 1"/>\n    <material', '0 0 2"/>\n    <material'),
+        ('pos="1 0 0" euler', 'pos="1 0 1" euler'),
+        ('group="3"/>\n    <geom name="clear"', 'group="2"/>\n    <geom name="clear"'),
+    ],
+)
+def test_two_models_look_the_same_if_the_same_is_drawn(model, old: str, new: str) -> None:
+    assert old in SHAPES
+    assert look_of(mujoco.MjModel.from_xml_string(SHAPES.replace('pos="0 0 1"', 'pos="0 0 2"'))) == look_of(model)
+    assert look_of(mujoco.MjModel.from_xml_string(SHAPES.replace(old, new))) != look_of(model)
 
 
 def test_a_plane_has_no_end(model) -> None:

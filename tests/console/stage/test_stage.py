@@ -107,6 +107,55 @@ def test_a_deck_carries_the_floor_above_water_that_moves(server, landing_scenari
     assert any(n.startswith("/sea/body_") and n.endswith("/floor") for n in names)
 
 
+def test_it_stands_for_the_next_flight_whose_scene_looks_the_same(stage, recording, server) -> None:
+    from armland.plant.scene.composition import build_scene
+
+    stage.show(recording.at(7.0))
+    other = recording.scenario.with_seed(5)
+    buffer = server.viser._websock_server._broadcast_buffer
+    before = buffer.message_counter
+    assert stage.take(build_scene(other, "free"), 20.0, other, 0.02)
+    assert buffer.message_counter == before
+    tick = recording.ticks[7000:7001].copy()
+    tick["truth"]["hinge_force"] = [0.0, 0.0, -20.0]
+    stage.show(tick[0])
+    # The new flight's weight, and its poses for the camera too.
+    np.testing.assert_allclose(np.diff(stage._force.points[0], axis=0), [[0.0, 0.0, -WEIGHT_M]], atol=1e-6)
+    assert stage._sight.poses is stage.poses
+    assert "polygon" in stage.sight(tick[0], 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "bond", "envelope"),
+    [
+        ({"plate": {"radius_m": 0.03}}, "free", 0.02),
+        ({"camera": {"field_of_view_deg": [50.0, 40.0]}}, "free", 0.02),
+        ({"sea": {"state": "ss1"}}, "free", 0.02),
+        ({}, "hinged", 0.02),
+        ({}, "free", 0.03),
+    ],
+)
+def test_it_does_not_stand_for_one_that_looks_otherwise(stage, recording, changes, bond, envelope) -> None:
+    from armland.plant.scene.composition import build_scene
+
+    poses, scenario = stage.poses, recording.scenario.replaced(changes)
+    assert not stage.take(build_scene(scenario, bond), 20.0, scenario, envelope)
+    assert stage.poses is poses
+
+
+def test_a_sea_that_is_taken_over_has_the_next_flight_s_waves(server, landing_scenario) -> None:
+    from armland.plant.scene.composition import build_scene
+
+    scenario = landing_scenario.replaced({"sea": {"state": "ss1"}})
+    stage = Stage(server.viser.scene, build_scene(scenario, "free"), "/sea", 5.0, scenario)
+    stage.wave(2.0)
+    before = stage._water._meshes[0].vertices.copy()
+    other = scenario.with_seed(scenario.run.seed + 1)
+    assert stage.take(build_scene(other, "free"), 5.0, other, 0.0)
+    stage.wave(2.0)
+    assert np.abs(stage._water._meshes[0].vertices - before).max() > 0.01
+
+
 def test_removed_it_is_gone(stage, server) -> None:
     stage.remove()
     with pytest.warns(UserWarning, match="already removed"):

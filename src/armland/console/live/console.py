@@ -124,13 +124,15 @@ class Console:
         self._closed.set()
 
     def _begin(self, flight: Steered) -> None:
-        if self._stage is not None:
-            self._stage.remove()
-        self._number += 1
         self._flight, plan, scenario = flight, flight.flight.plan, flight.flight.scenario
         scene = flight.flight.simulator.scene
-        name, envelope = f"/flight_{self._number}", float(plan.thresholds.get("align_offset_m", 0.0))
-        self._stage = Stage(self._server.viser.scene, scene, name, plan.weight_n, scenario, envelope)
+        envelope = float(plan.thresholds.get("align_offset_m", 0.0))
+        if self._stage is None or not self._stage.take(scene, plan.weight_n, scenario, envelope):
+            if self._stage is not None:
+                self._stage.remove()
+            self._number += 1
+            name = f"/flight_{self._number}"
+            self._stage = Stage(self._server.viser.scene, scene, name, plan.weight_n, scenario, envelope)
         self._rows.clear()
         self._phases, self._begun, self._fault = [], [], 0
         self._thrown.clear()

@@ -74,14 +74,17 @@ def failure(fault: str, phase: str) -> Fault:
 
 def table_html(plan: Plan, chosen: tuple[str, str] | None = None) -> str:
     """The table fault × phase as HTML, with the cell that is chosen marked."""
-    phases = [p.name for p in plan.phases if not p.final and p.name not in HELD_BY_HAND]
-    head = "".join(f'<th style="{CELL}">{escape(p.replace("_", " "))}</th>' for p in phases)
+    names, ends = plan.names, plan.table["faults"][0]
+    phases = [(i, p.name) for i, p in enumerate(plan.phases) if not p.final and p.name not in HELD_BY_HAND]
+    head = "".join(f'<th style="{CELL}">{escape(p.replace("_", " "))}</th>' for _, p in phases)
     rows = []
     for fault in PROVOKED:
         cells = []
-        for phase in phases:
+        for i, phase in phases:
             mark = ";background:#E69F0088;font-weight:700" if (fault, phase) == chosen else ""
-            cells.append(f'<td style="{CELL}{mark}">{escape(end_of(plan, fault, phase).replace("_", " "))}</td>')
+            end = int(ends[FAULT[fault], i])
+            words = "-" if end < 0 else names[end].replace("_", " ")
+            cells.append(f'<td style="{CELL}{mark}">{escape(words)}</td>')
         rows.append(
             f'<tr><th style="{CELL};text-align:left">{escape(fault.replace("_", " "))}</th>{"".join(cells)}</tr>'
         )

@@ -11,10 +11,10 @@ The cradle's buffers are not logged: its rails are drawn where they rest without
 """
 
 from collections.abc import Callable, Mapping
+from math import asin, atan2
 
 import mujoco
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from armland.errors import ArmlandError, LogError
 from armland.models.arm_file.spec import PREFIX
@@ -22,7 +22,7 @@ from armland.models.description import EE_SITE
 from armland.plant.scene.composition import Scene, build_scene
 from armland.plant.scene.uav import UAV
 from armland.records import Records
-from armland.rotations import Array, matrix
+from armland.rotations import Array, matrix, quaternion_of
 from armland.scenario import Scenario
 from armland.scenario.arm import Arm
 
@@ -90,39 +90,47 @@ class Poses:
         if not self._carried:
             q[s.joint_qpos] = truth["q"]
         if s.deck_qpos >= 0:
-            yaw_pitch_roll = rotation(truth["deck_quat"]).as_euler("ZYX")
+            D = turn_of(truth["deck_quat"])
+            # Rz, Ry, Rx.
+            yaw_pitch_roll = atan2(D[1, 0], D[0, 0]), _arcsin(-D[2, 0]), atan2(D[2, 1], D[2, 2])
             q[s.deck_qpos : s.deck_qpos + 6] = [*truth["deck"], *yaw_pitch_roll]
-        body = rotation(truth["quat"])
+        B = turn_of(truth["quat"])
         if s.bond == "free":
-            q[s.uav_qpos[:3]] = truth["r"] - body.apply(self._pivot)
+            q[s.uav_qpos[:3]] = truth["r"] - B @ self._pivot
             q[s.uav_qpos[3:]] = truth["quat"]
             # From the UAV to its plate the hinge turns by Ry, Rx, Rz.
-            y, x, z = (body.inv() * rotation(truth["plate_quat"])).as_euler("YXZ")
-            q[s.hinge_qpos] = [y, x, z]
+            R = B.T @ turn_of(truth["plate_quat"])
+            q[s.hinge_qpos] = [atan2(R[0, 2], R[2, 2]), _arcsin(-R[1, 2]), atan2(R[1, 0], R[1, 1])]
         else:
             # From the arm to the UAV by Rz, Rx, Ry.
-            q[s.hinge_qpos] = (rotation(truth["ee_quat"]).inv() * body).as_euler("ZXY")
+            R = turn_of(truth["ee_quat"]).T @ B
+            q[s.hinge_qpos] = [atan2(-R[0, 1], R[1, 1]), _arcsin(R[2, 1]), atan2(-R[2, 0], R[2, 2])]
         mujoco.mj_kinematics(self.model, self._data)
         if self._carried:
-            self._carry(np.array(truth["ee"]), rotation(truth["ee_quat"]))
+            self._carry(np.array(truth["ee"]), turn_of(truth["ee_quat"]))
         mujoco.mj_camlight(self.model, self._data)
 
-    def _carry(self, place: Array, turn: Rotation) -> None:
-        # To where the truth has the end effector: (3,), m, W, and its attitude.
+    def _carry(self, place: Array, turn: Array) -> None:
+        # To where the truth has the end effector: (3,), m, W, and its attitude (3, 3).
         d, ee = self._data, self.model.site(EE_SITE).id
-        by = turn * Rotation.from_matrix(d.site_xmat[ee].reshape(3, 3)).inv()
+        by = turn @ d.site_xmat[ee].reshape(3, 3).T
         at = d.site_xpos[ee].copy()
         for b in self._carried:
-            d.xpos[b] = place + by.apply(d.xpos[b] - at)
-            d.xquat[b] = (by * rotation(d.xquat[b])).as_quat(scalar_first=True)
-            d.xmat[b] = matrix(d.xquat[b]).ravel()
-            d.xipos[b] = place + by.apply(d.xipos[b] - at)
+            R = by @ d.xmat[b].reshape(3, 3)
+            d.xpos[b] = place + by @ (d.xpos[b] - at)
+            d.xquat[b], d.xmat[b] = quaternion_of(R), R.ravel()
+            d.xipos[b] = place + by @ (d.xipos[b] - at)
         d.site_xpos[ee] = place
 
     @property
     def bodies(self) -> tuple[Array, Array]:
         """Positions (nbody, 3), m, and attitudes (nbody, 4), scalar first, W."""
         return self._data.xpos, self._data.xquat
+
+    @property
+    def turns(self) -> Array:
+        """The same attitudes as matrices (nbody, 3, 3), W<-body."""
+        return self._data.xmat.reshape(-1, 3, 3)
 
     @property
     def end_effector(self) -> Array:
@@ -135,14 +143,19 @@ class Poses:
         if number < 0:
             return None
         # MuJoCo's cameras look along their -z, with y up.
-        R = self._data.cam_xmat[number].reshape(3, 3) @ np.diag([1.0, -1.0, -1.0])
-        return np.array(self._data.cam_xpos[number]), Rotation.from_matrix(R).as_quat(scalar_first=True)
+        R = self._data.cam_xmat[number].reshape(3, 3) * [1.0, -1.0, -1.0]
+        return np.array(self._data.cam_xpos[number]), quaternion_of(R)
 
 
-def rotation(quat: Array) -> Rotation:
-    """A logged attitude (4,), scalar first; what is no rotation, in a damaged log, is none at all."""
-    good = np.isfinite(quat).all() and np.linalg.norm(quat) > 0.5
-    return Rotation.from_quat(quat, scalar_first=True) if good else Rotation.identity()
+def turn_of(quat: Array) -> Array:
+    """Rotation matrix (3, 3) of a logged attitude (4,), scalar first; of what is none, in a damaged log, no turn at all."""
+    norm = float(np.linalg.norm(quat))
+    return matrix(quat / norm) if 0.5 < norm < np.inf else np.eye(3)
+
+
+def _arcsin(sine: float) -> float:
+    # Rounding may carry it beyond one.
+    return asin(min(max(float(sine), -1.0), 1.0))
 
 
 def forces_from(truth: Records) -> Array:

@@ -1,6 +1,8 @@
 """MuJoCo's shapes as triangles, joined for each body and colour: a browser draws few large meshes sooner than many small ones."""
 
 from collections import defaultdict
+from functools import lru_cache
+from hashlib import sha256
 from typing import NamedTuple
 
 import mujoco
@@ -54,22 +56,39 @@ def triangles(model: mujoco.MjModel, geom: int) -> tuple[Array, np.ndarray] | No
         first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
         begin, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
         return model.mesh_vert[first : first + count].astype(float), model.mesh_face[begin : begin + faces].copy()
-    make = trimesh.creation
+    return _primitive(kind, tuple(size.tolist()))
+
+
+@lru_cache(maxsize=1024)
+def _primitive(kind: int, size: tuple[float, ...]) -> tuple[Array, np.ndarray] | None:
+    # The next flight's scene has the same ones, and to make them takes as long as to send them.
+    make, G, rings = trimesh.creation, mujoco.mjtGeom, [ROUND // 2, ROUND]
     if kind == G.mjGEOM_BOX:
-        made = make.box(extents=2.0 * size)
+        made = make.box(extents=2.0 * np.array(size))
     elif kind == G.mjGEOM_SPHERE:
-        made = make.uv_sphere(radius=size[0], count=[ROUND // 2, ROUND])
+        made = make.uv_sphere(radius=size[0], count=rings)
     elif kind == G.mjGEOM_ELLIPSOID:
-        made = make.uv_sphere(radius=1.0, count=[ROUND // 2, ROUND]).apply_scale(size)
+        made = make.uv_sphere(radius=1.0, count=rings).apply_scale(size)
     elif kind == G.mjGEOM_CYLINDER:
         made = make.cylinder(radius=size[0], height=2.0 * size[1], sections=ROUND)
     elif kind == G.mjGEOM_CAPSULE:
         # Its ends are the middles of its caps.
-        made = make.capsule(height=2.0 * size[1], radius=size[0], count=[ROUND // 2, ROUND])
+        made = make.capsule(height=2.0 * size[1], radius=size[0], count=rings)
         made.apply_translation([0.0, 0.0, -made.bounds.mean(axis=0)[2]])
     else:
         return None
-    return np.asarray(made.vertices, dtype=float), np.asarray(made.faces)
+    vertices, faces = np.array(made.vertices, dtype=float), np.array(made.faces)
+    vertices.flags.writeable = faces.flags.writeable = False
+    return vertices, faces
+
+
+def look_of(model: mujoco.MjModel) -> str:
+    """The same for two models of which the same is drawn, wherever their bodies are."""
+    arrays = (
+        *(model.geom_type, model.geom_size, model.geom_pos, model.geom_quat, model.geom_bodyid, model.geom_group),
+        *(model.geom_rgba, model.geom_matid, model.geom_dataid, model.mat_rgba, model.mesh_vert, model.mesh_face),
+    )
+    return sha256(b"".join([model.names, *(a.tobytes() for a in arrays)])).hexdigest()
 
 
 def drawn(model: mujoco.MjModel) -> list[int]:

@@ -1,21 +1,16 @@
 """What the camera on the gripper sees: outlines of all shapes in its image plane, and where it found the marker, as an SVG.
 
-| symbol | name | unit, frame |
-|---|---|---|
-| c | camera frame: z along the view, x to the image's right, y down | m |
-| (u, v) = (x/z, y/z) | a point of the picture | 1 |
-
 A shape is drawn as the convex hull of its projected corners, the far ones first: exact for boxes, cylinders, capsules and
-ellipsoids, of which UAV, plate and gear consist. A rendered picture takes ten times as long and needs OpenGL.
+ellipsoids, of which UAV, plate and gear consist. A rendered picture takes a hundred times as long and needs OpenGL.
 """
 
 from html import escape
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
-from armland.console.stage.poses import Poses, rotation
+from armland.console.stage.outlines import NEAR_M, Hull, Outlines, hull_of, outline
+from armland.console.stage.poses import Poses, turn_of
 from armland.console.stage.shapes import color_of, drawn, triangles
 from armland.plant.scene.eye import CAMERA, MARKER
 from armland.records import Records
@@ -25,34 +20,28 @@ from armland.scenario.sensing import Camera
 WIDTH = 360
 """Of the picture, in its own units."""
 
-NEAR_M = 0.01
-"""What is nearer to the optical centre is cut off."""
+RING = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+"""Edges of a square."""
 
 SKY, BLACK, FOUND, PIVOT = "#dfe7ee", "#111111", "#009E73", "#D55E00"
-
-
-class Shape(NamedTuple):
-    """One shape of the scene."""
-
-    body: int
-    corners: Array  # (v, 3) m, body
-    edges: np.ndarray  # (e, 2) indices of corners
-    color: str
 
 
 class Sight:
     """The camera's picture of a scene.
 
     Args:
-        poses: of the scene; they are set by whoever shows it.
+        poses: of the scene; they are set by whoever shows it. Others of a scene that looks the same may take their place.
         camera: of the scenario.
     """
 
     def __init__(self, poses: Poses, camera: Camera) -> None:
         model = poses.model
-        self._poses, self._camera = poses, camera
+        self.poses, self._camera = poses, camera
         self._half = np.tan(0.5 * np.deg2rad(camera.field_of_view_deg))
-        self._shapes = [s for g in drawn(model) if (s := _shape(model, g)) is not None and s.body not in poses.absent]
+        shapes = [(hull, _color(model, g)) for g in drawn(model) if (hull := _hull(model, g)) is not None]
+        shapes = [(hull, color) for hull, color in shapes if hull.body not in poses.absent]
+        self._colors = [color for _, color in shapes]
+        self._outlines = Outlines([hull for hull, _ in shapes], self._half)
         self._uav = int(model.geom_bodyid[model.geom(MARKER).id])
         half = 0.5 * camera.marker_size_m
         self._square = half * np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
@@ -64,67 +53,52 @@ class Sight:
             tick: a record of `records.tick_layout`.
             period_s: of a tick, s.
         """
-        seen = self._poses.camera(CAMERA)
+        seen = self.poses.camera(CAMERA)
         if seen is None:
             return ""
-        R, centre = rotation(seen[1]).as_matrix(), seen[0]
-        places, turns = self._poses.bodies
-        near: list[tuple[float, str]] = []
-        for shape in self._shapes:
-            points = (shape.corners @ matrix(turns[shape.body]).T + places[shape.body] - centre) @ R
-            if (path := self._outline(points, shape.edges)) is not None:
-                near.append((-float(points[:, 2].mean()), _polygon(path, shape.color)))
+        R, centre = matrix(seen[1]), seen[0]
+        places, turns = self.poses.bodies
+        shapes = [
+            (o.depth, o.path, self._colors[o.number]) for o in self._outlines.seen(places, self.poses.turns, centre, R)
+        ]
         marker = np.array(self._camera.marker_m) + self._square
         marker = (marker @ matrix(turns[self._uav]).T + places[self._uav] - centre) @ R
-        if (path := self._outline(marker, _ring(4))) is not None:
+        if (path := outline(marker, RING, self._half)) is not None:
             # Before the plate on which it is printed, behind what is nearer.
-            near.append((-float(marker[:, 2].mean()) + 2e-3, _polygon(path, BLACK)))
-        parts = [text for _, text in sorted(near)]
-        parts += self._found(tick) + self._pivot((np.array(tick["truth"]["r"]) - centre) @ R)
+            shapes.append((float(marker[:, 2].mean()) - 2e-3, path, BLACK))
+        shapes.sort(key=lambda shape: -shape[0])
+        paths, looks = [path for _, path, _ in shapes], [f'fill="{color}"' for _, _, color in shapes]
+        if (path := self._found(tick)) is not None:
+            paths.append(path)
+            looks.append(f'fill="none" stroke="{FOUND}" stroke-width="3"')
+        parts = self._polygons(paths, looks) + self._pivot((np.array(tick["truth"]["r"]) - centre) @ R)
         return _page(parts, self._half, self._words(tick, period_s))
 
-    def _found(self, tick: Records) -> list[str]:
+    def _found(self, tick: Records) -> Array | None:
         # Where the newest image had the marker.
         m = tick["measurement"]
         if not tick["estimate"]["plate_valid"] or not m["camera_position"][2] > NEAR_M:
-            return []
-        corners = self._square @ rotation(m["camera_quat"]).as_matrix().T + m["camera_position"]
-        path = self._outline(corners, _ring(4))
-        return (
-            []
-            if path is None
-            else [f'<polygon points="{_points(path)}" fill="none" stroke="{FOUND}" stroke-width="3"/>']
-        )
+            return None
+        corners = self._square @ turn_of(m["camera_quat"]).T + m["camera_position"]
+        return outline(corners, RING, self._half)
 
     def _pivot(self, point: Array) -> list[str]:
         if not point[2] > NEAR_M:
             return []
-        u, v = self._pixels(point[None])[0]
+        u, v = self._pixels(point[:2] / point[2])
         return [f'<path d="M{u - 6:.1f} {v:.1f}h12M{u:.1f} {v - 6:.1f}v12" stroke="{PIVOT}" stroke-width="2"/>']
 
-    def _outline(self, points: Array, edges: np.ndarray) -> Array | None:
-        # (k, 2), the hull of what is before the camera and in the picture; None where nothing is.
-        before = points[:, 2] > NEAR_M
-        if not before.all():
-            if not before.any():
-                return None
-            a, b = (points[edges[:, i]] for i in (0, 1))
-            cut = (a[:, 2] > NEAR_M) != (b[:, 2] > NEAR_M)
-            a, b = a[cut], b[cut]
-            share = ((NEAR_M - a[:, 2]) / (b[:, 2] - a[:, 2]))[:, None]
-            points = np.vstack([points[before], a + share * (b - a)])
-        flat = points[:, :2] / points[:, 2:]
-        low, high = flat.min(axis=0), flat.max(axis=0)
-        if not (np.isfinite(flat).all() and (high > -self._half).all() and (low < self._half).all()):
-            return None
-        try:
-            return self._pixels(points[ConvexHull(flat).vertices])
-        except QhullError:
-            # Seen edge on it has no area.
-            return None
+    def _polygons(self, paths: list[Array], looks: list[str]) -> list[str]:
+        # All numbers at once, and written as a list is: as good to SVG, and much quicker than number by number.
+        flat = np.vstack([np.zeros((0, 2)), *paths])
+        numbers, ends = np.round(self._pixels(flat), 1).ravel().tolist(), 2 * np.cumsum([len(p) for p in paths])
+        return [
+            f'<polygon points="{str(numbers[end - 2 * len(path) : end])[1:-1]}" {look}/>'
+            for path, look, end in zip(paths, looks, ends, strict=True)
+        ]
 
-    def _pixels(self, points: Array) -> Array:
-        return (points[:, :2] / points[:, 2:] / self._half[0] + [1.0, self._half[1] / self._half[0]]) * 0.5 * WIDTH
+    def _pixels(self, path: Array) -> Array:
+        return (path / self._half[0] + [1.0, self._half[1] / self._half[0]]) * 0.5 * WIDTH
 
     def _words(self, tick: Records, period_s: float) -> str:
         m = tick["measurement"]
@@ -134,34 +108,18 @@ class Sight:
         return f"marker at {np.linalg.norm(m['camera_position']):.3f} m, in an image {1e3 * age:.0f} ms old"
 
 
-def _shape(model: Any, geom: int) -> Shape | None:
+def _hull(model: Any, geom: int) -> Hull | None:
     made = triangles(model, geom)
     if made is None:
         return None
     vertices, faces = made
     placed = vertices @ matrix(model.geom_quat[geom]).T + model.geom_pos[geom]
-    try:
-        hull = ConvexHull(placed)
-    except QhullError:
-        hull, faces = None, faces
-    faces = faces if hull is None else hull.simplices
-    used, numbers = np.unique(faces, return_inverse=True)
-    numbers = numbers.reshape(-1, 3)
-    edges = np.unique(np.sort(numbers[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    return hull_of(int(model.geom_bodyid[geom]), placed, faces)
+
+
+def _color(model: Any, geom: int) -> str:
     r, g, b = (round(255 * c) for c in color_of(model, geom)[:3])
-    return Shape(int(model.geom_bodyid[geom]), placed[used], edges, f"#{r:02x}{g:02x}{b:02x}")
-
-
-def _ring(n: int) -> np.ndarray:
-    return np.stack([np.arange(n), np.roll(np.arange(n), -1)], axis=1)
-
-
-def _points(path: Array) -> str:
-    return " ".join(f"{u:.1f},{v:.1f}" for u, v in path)
-
-
-def _polygon(path: Array, color: str) -> str:
-    return f'<polygon points="{_points(path)}" fill="{color}"/>'
+    return f"#{r:02x}{g:02x}{b:02x}"
 
 
 def _page(parts: list[str], half: Array, words: str) -> str:

@@ -17,8 +17,10 @@ import numpy as np
 import trimesh
 from viser import SceneApi
 
+from armland.console.page.often import put_place, put_turn
+from armland.console.stage.frames import Frames
 from armland.console.stage.poses import Poses, forces_from, to_world
-from armland.console.stage.shapes import Mesh, meshes_of
+from armland.console.stage.shapes import Mesh, look_of, meshes_of
 from armland.console.stage.sight import Sight
 from armland.console.stage.water import Water
 from armland.plant.scene.composition import Scene
@@ -34,9 +36,6 @@ WEIGHT_M, WIND_M = 0.25, 0.08
 
 SHORTEST_M = 0.04
 """Length of an arrow that is worth to be seen, m."""
-
-STILL = 1e-5
-"""Change of a place, m, and of a quaternion's numbers, 1, that nobody sees."""
 
 SEEN, LOST = (0, 158, 115), (213, 94, 0)
 FORCE, WIND, PATH = (213, 94, 0), (86, 180, 233), (0, 114, 178)
@@ -72,10 +71,9 @@ class Stage:
         armless: bool = False,
     ) -> None:
         self.poses, self._api, self._name, self._ghost = Poses(scene, armless), api, name, ghost
-        self._weight = weight if np.isfinite(weight) and weight > 0.0 else 10.0
+        self._weight, self._look = _unit(weight), _look(scene, scenario, envelope)
         self._root = api.add_frame(name, show_axes=False)
-        self._frames: dict[int, Any] = {}
-        self._last: dict[int, tuple[Array, Array]] = {}
+        self._frames = Frames()
         for number, mesh in enumerate(meshes_of(scene.model)):
             if mesh.body not in self.poses.absent:
                 self._hang(number, mesh)
@@ -102,19 +100,19 @@ class Stage:
         """
         truth = tick["truth"]
         self.poses.set(truth)
-        places, turns = self.poses.bodies
-        for body, frame in self._frames.items():
-            self._move(body, frame, places[body], turns[body])
+        self._frames.show(*self.poses.bodies)
         self._point(self._force, np.array(truth["r"]), forces_from(truth) * WEIGHT_M / self._weight)
         above = np.array(truth["r_cm"]) + [0.0, 0.0, 0.25]
         self._point(self._wind, above, np.zeros(3) if wind is None else WIND_M * wind)
         if self._eye is not None and (seen := self.poses.camera(CAMERA)) is not None:
-            self._eye.position, self._eye.wxyz = seen
+            put_place(self._eye, seen[0])
+            put_turn(self._eye, seen[1])
             color = SEEN if tick["estimate"]["plate_valid"] else LOST
             if self._eye.color != color:
                 self._eye.color = color
         if self._disc is not None:
-            self._disc.position, self._disc.wxyz = self.poses.end_effector, np.array(truth["ee_quat"])
+            put_place(self._disc, self.poses.end_effector)
+            put_turn(self._disc, truth["ee_quat"])
 
     def wave(self, time: float, share: float = 1.0) -> None:
         """Let the water be as at a time, s, with a `share` of its height."""
@@ -133,6 +131,21 @@ class Stage:
             self._path.points = np.stack([world[:-1], world[1:]], axis=1).astype(np.float32)
         self._path.visible = len(world) > 1
 
+    def take(self, scene: Scene, weight: float, scenario: Scenario, envelope: float) -> bool:
+        """Stand for another flight, so that no page needs its shapes anew; arguments as for a stage.
+
+        Returns:
+            Whether its scene looks the same. If not, nothing is changed.
+        """
+        if _look(scene, scenario, envelope) != self._look:
+            return False
+        self.poses, self._weight = Poses(scene), _unit(weight)
+        if self._sight is not None:
+            self._sight.poses = self.poses
+        if self._water is not None:
+            self._water.flow(scenario)
+        return True
+
     def remove(self) -> None:
         """Take the flight out of the scene."""
         self._root.remove()
@@ -140,7 +153,7 @@ class Stage:
     def _hang(self, number: int, mesh: Mesh) -> None:
         frame = f"{self._name}/body_{mesh.body}"
         if mesh.body not in self._frames:
-            self._frames[mesh.body] = self._api.add_frame(frame, show_axes=False)
+            self._frames.add(mesh.body, self._api.add_frame(frame, show_axes=False))
         opacity = 0.3 if self._ghost else mesh.opacity
         self._api.add_mesh_simple(
             f"{frame}/mesh_{number}",
@@ -152,21 +165,13 @@ class Stage:
             cast_shadow=not self._ghost and opacity >= 1.0,
         )
 
-    def _move(self, body: int, frame: Any, place: Array, turn: Array) -> None:
-        # What stands still is told once: each message costs the page time.
-        before = self._last.get(body)
-        if before is not None and abs(before[0] - place).max() < STILL and abs(before[1] - turn).max() < STILL:
-            return
-        self._last[body] = place.copy(), turn.copy()
-        frame.position, frame.wxyz = place, turn
-
     def _lay_floor(self, scene: Scene, scenario: Scenario | None) -> None:
         under = self._name
         if scene.deck_qpos >= 0:
             deck = scene.model.body(DECK).id
             under = f"{self._name}/body_{deck}"
             if deck not in self._frames:
-                self._frames[deck] = self._api.add_frame(under, show_axes=False)
+                self._frames.add(deck, self._api.add_frame(under, show_axes=False))
             self._water = Water(self._api, self._name, scenario)
         size = 3.0 if scene.deck_qpos >= 0 else 8.0
         self._api.add_grid(
@@ -223,3 +228,12 @@ class Stage:
             arrow.points = np.stack([start, start + along])[None].astype(np.float32)
         if arrow.visible != seen:
             arrow.visible = seen
+
+
+def _unit(weight: float) -> float:
+    return weight if np.isfinite(weight) and weight > 0.0 else 10.0
+
+
+def _look(scene: Scene, scenario: Scenario | None, envelope: float) -> tuple[Any, ...]:
+    of = () if scenario is None else (scenario.camera, scenario.sea)
+    return (look_of(scene.model), scene.bond, scene.deck_qpos >= 0, envelope, *of)

@@ -30,10 +30,9 @@ class Water:
     """
 
     def __init__(self, api: SceneApi, name: str, scenario: Scenario | None) -> None:
-        self._waves = None if scenario is None else _waves(scenario)
+        self.flow(scenario)
         self._base = np.zeros(3) if scenario is None else np.array(scenario.sea.base_m)
         self._at = np.linspace(-HALF_M, HALF_M, CELLS)
-        self._shown = (-np.inf, 1.0)
         x, y = np.meshgrid(self._at, self._at, indexing="ij")
         self._points = np.stack([x, y, np.full_like(x, -self._base[2] - FREEBOARD_M)], axis=2)
         # Slopes of a few degrees are seen by lines, hardly by light.
@@ -51,6 +50,11 @@ class Water:
             )
             for end, color in (("", COLOR), ("_lines", LINES))
         ]
+
+    def flow(self, scenario: Scenario | None) -> None:
+        """Have the waves of another flight from the next `show` on, at the same sea level."""
+        self._waves = None if scenario is None else _waves(scenario)
+        self._shown = (-np.inf, 1.0)
 
     def show(self, time: float, share: float) -> None:
         """Be as at a time, s, with a share of the waves' height."""
