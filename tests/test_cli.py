@@ -294,3 +294,15 @@ def test_takeoff_weight_refuses_bad_input(armland: Call, tmp_path: Path) -> None
     assert done.code == 2, done.err
     assert "out of reach" in done.err
     assert "Traceback" not in done.err
+
+
+def test_sums_of_a_flight_have_one_order_however_many_cores_there_are() -> None:
+    code = (
+        "import os, sys; from armland.cli import main\n"
+        "assert 'numpy' not in sys.modules\n"
+        "sys.argv = ['armland', '--version']\n"
+        "try:\n    main()\nexcept SystemExit:\n    print(os.environ['OPENBLAS_NUM_THREADS'])"
+    )
+    many = os.environ | {"OPENBLAS_NUM_THREADS": "8"}
+    done = subprocess.run([sys.executable, "-c", code], env=many, capture_output=True, text=True)
+    assert done.stdout.split()[-1] == "1", done.stderr

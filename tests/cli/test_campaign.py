@@ -21,6 +21,19 @@ overrides.run.duration_s = 1.2
 air.wind_mps = {sweep = [3.0, 4.0]}
 """
 
+RARE = """
+mission = "landing"
+overrides.run.duration_s = 1.0
+
+[parameters]
+uav.extra_mass_kg = {normal = [0.03, 0.01], low = 0.0, high = 0.06}
+
+[failure]
+figure = "joint_torque_max_ratio"
+above = 0.26
+stage = 20
+"""
+
 
 @pytest.fixture
 def study(tmp_path, monkeypatch):
@@ -35,7 +48,7 @@ def files(folder):
 
 
 def test_from_a_file_to_a_report_and_a_row_flown_again(armland, study):
-    done = armland("campaign", "study.toml", "--runs", "2", "--json")
+    done = armland("campaign", "study.toml", "--runs", "2", "--json", "--no-pictures")
     assert done.code == 0, done.err
     result = json.loads(done.out)
     assert [(p["name"], p["flights"]) for p in result["points"]] == [("air.wind_mps = 3", 2), ("air.wind_mps = 4", 2)]
@@ -68,6 +81,21 @@ def test_from_a_file_to_a_report_and_a_row_flown_again(armland, study):
     assert (done.code, "Row 3: NOT the same (x, " in done.out) == (1, True)
 
 
+def test_rate_of_a_rare_failure_and_one_of_its_rows_flown_again(armland, study):
+    (study / "study.toml").write_text(RARE)
+    done = armland("campaign", "study.toml", "--rare", "--runs", "45", "--json", "--no-figures")
+    assert done.code == 0, done.err
+    rare = json.loads(done.out)["rare"]
+    assert (rare["failure"], rare["flights"]) == ("torque ratio max above 0.26", 45)
+    assert [s["flights"] for s in rare["stages"]] in ([20, 20, 5], [20, 20], [20])
+    done = armland("campaign", "replay", "out/campaign/study.sqlite", "31", "--no-figures", "--json")
+    assert (done.code, json.loads(done.out)["same"]) == (0, True)
+    done = armland("campaign", "study.toml", "--resume", "--no-figures")
+    assert (done.code, "was flown with --rare, not without" in " ".join(done.err.split())) == (2, True)
+    done = armland("campaign", "study.toml", "--rare", "--resume", "--no-figures", "--runs", "50")
+    assert (done.code, "50 of 50 flown" in done.err) == (0, True), done.err
+
+
 def test_file_is_the_default_command(armland, study):
     assert "Fly a mission many times" in armland("campaign", "fly", "--help").out
     assert "fly" in armland("campaign", "--help").out
@@ -92,6 +120,11 @@ BAD = {
     "too windy": (STUDY.replace("4.0]", "45.0]"), (), "air.wind_mps"),
     "no mission": (STUDY.replace("landing", "hovering"), (), "hovering"),
     "no scenario": (STUDY + '[[points]]\nscenario = "x"\n', (), "scenario"),
+    "rare in points": (STUDY, ("--rare",), "--rare finds one rate, and the file has 2 points"),
+    "rare until": (RARE, ("--rare", "--until", "1%"), "--until is for plain flights"),
+    "rare few": (RARE, ("--rare", "--runs", "30"), "--runs 30: with --rare 40 to"),
+    "no figure": (RARE.replace("joint_torque", "bone_torque"), ("--rare",), "figure = 'bone_torque_max_ratio' is none"),
+    "no threshold": (RARE.replace("above = 0.26", ""), ("--rare",), "figure and above belong together"),
     "no cluster": (STUDY, ("--ray", "203.0.113.1:1"), "--ray"),
 }
 

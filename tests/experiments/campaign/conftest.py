@@ -38,6 +38,19 @@ def endless(job, task):
     time.sleep(1000.0)
 
 
+def tailed(job, task):
+    # Its hinge force is the drawn value `a`.
+    result = {"seed": task.seed, "success": True, "reason": "made up", "hinge_force_max_n": task.values["a"]}
+    return Row(*task, success=True, outcome="done", result=result, digest=f"{task.seed:032x}")
+
+
+def lucky(job, task):
+    # Its seed alone decides.
+    row = tailed(job, task)
+    row.result["hinge_force_max_n"] = 100.0 * (task.seed * 0.6180339887498949 % 1.0)
+    return row
+
+
 def hasty(job, task):
     # Successes take longer than failures do.
     row = quick(job, task)

@@ -75,3 +75,15 @@ def test_field_that_had_another_length_is_refused() -> None:
     rows, target = np.zeros(2, [("r", "f8", (2,))]), np.zeros(2, [("r", "f8", (3,))])
     with pytest.raises(LogError, match=r"its field truth\.r has 2 numbers where this version has 3"):
         converted(rows, target, "truth")
+
+
+def test_without_an_arm_the_fields_of_joints_are_left_out_and_read_as_none():
+    text = schema_text("measurement", 0)
+    assert "[0]" not in text
+    assert " q " not in text
+    rows, target = np.zeros(3, schema_layout(text)), np.zeros(3, layout("measurement", 0))
+    rows["tick"] = [1, 2, 3]
+    converted(rows, target, "measurement")
+    assert target["tick"].tolist() == [1, 2, 3]
+    assert target["q"].shape == (3, 0)
+    assert rows.dtype.itemsize == target.dtype.itemsize

@@ -7,7 +7,7 @@ import pytest
 from armland.errors import LogError
 from armland.experiments.episode import fly, prepare
 from armland.plant.scene.uav import PLATE, UAV
-from armland.runtime.log import Log
+from armland.runtime.log import Log, read_log
 from armland.scenario import load_scenario
 from armland.view.film.stage import CAMERA, SCENERY, extent, poses, stage_of
 
@@ -28,6 +28,21 @@ def same_attitude(quat: np.ndarray, xmat: np.ndarray, atol: float) -> None:
     R = np.zeros(9)
     mujoco.mju_quat2Mat(R, quat)
     np.testing.assert_allclose(R, xmat, atol=atol)
+
+
+@pytest.mark.parametrize("sea", ["calm", "ss2"])
+def test_pictures_of_a_landing_without_an_arm_show_pad_and_truth(tmp_path, sea) -> None:
+    scenario = load_scenario("hexapod", {"run": {"duration_s": 1.0}, "sea": {"state": sea}})
+    fly(scenario, "hexapod", log=tmp_path / "a.mcap")
+    log = read_log(tmp_path / "a.mcap")
+    assert log.messages["truth"]["q"].shape[1] == 0
+    found = shown(log)
+    assert len(found) == 5
+    for row, data, scene in found:
+        np.testing.assert_allclose(data.site(f"{UAV}pivot").xpos, row["r"], atol=1e-9)
+        same_attitude(row["quat"], data.site(f"{UAV}pivot").xmat, 1e-9)
+        assert (mujoco.mj_name2id(scene.model, mujoco.mjtObj.mjOBJ_BODY, "platform") >= 0) == (sea != "calm")
+        assert scene.model.body("pad").id > 0
 
 
 @pytest.mark.parametrize("which", ["landing_log", "sea_log"])

@@ -1,6 +1,7 @@
 """The commands of a campaign: fly it, report on it, fly one of its rows again."""
 
 import os
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -8,7 +9,7 @@ import typer
 
 from armland.cli import options
 from armland.cli.commands.arm import joints_of
-from armland.cli.console import campaign_told, diagnostics, phases_told, ready
+from armland.cli.console import campaign_told, diagnostics, phases_told, ready, reported
 from armland.cli.exits import EXPLAINED, attempted, say
 from armland.cli.results import Results, Work, publish
 
@@ -23,6 +24,8 @@ FLY_EPILOG = """**Examples**
 `armland campaign study.toml --runs 1000 --resume` goes on after whatever stopped it.
 
 `armland campaign study.toml --runs 100000 --until 0.5%` stops when the rate is known to half a per cent.
+
+`armland campaign study.toml --runs 3000 --rare` finds the rate of a failure that plain flights would hardly meet.
 
 `armland campaign study.toml --runs 1000000 --ray auto` flies on the Ray cluster that this machine belongs to.
 
@@ -49,6 +52,15 @@ REPLAY_EPILOG = f"""**Examples**
 {EXPLAINED} A flight that is not the same bit for bit does not succeed.
 """
 
+RARE_RUNS = 2000
+"""Flights of a rare campaign where nobody says."""
+
+_PICTURES = options.option(
+    bool,
+    "Fly the worst flights again for a strip of pictures of each on the page.",
+    "--pictures/--no-pictures",
+    default=True,
+)
 _STORE = options.argument(Path, "Store of a campaign, as `armland campaign FILE` makes it.", ..., metavar="STORE")
 
 
@@ -56,7 +68,10 @@ _STORE = options.argument(Path, "Store of a campaign, as `armland campaign FILE`
     FLY_EPILOG,
     file=options.argument(Path, "What to fly: a TOML file, see docs/campaign.md.", ..., metavar="FILE"),
     runs=options.option(
-        int | None, "Flights of each point; 100, or as many as the store is of, if absent.", min=1, max=10_000_000
+        int | None,
+        "Flights of each point; 100, with --rare 2000, or as many as the store is of, if absent.",
+        min=1,
+        max=10_000_000,
     ),
     jobs=options.option(int | None, "Processes that fly; one per core if absent.", min=1, max=1000),
     store=options.option(
@@ -66,18 +81,28 @@ _STORE = options.argument(Path, "Store of a campaign, as `armland campaign FILE`
     until=options.option(
         str | None, "Stop when each rate is known so well: half the width of its interval, as 0.5%.", metavar="SHARE"
     ),
+    rare=options.option(
+        bool,
+        "Draw nearer to the failures, for the rate of rare ones, see [failure] of the file.",
+        "--rare",
+        default=False,
+    ),
     ray=options.option(str | None, "Fly on a Ray cluster: its address, auto, or local.", metavar="ADDRESS"),
+    pictures=_PICTURES,
     **options.SHOWN,
 )
 def fly(**given: Any) -> None:
     """Fly a mission many times under conditions that vary, keep each flight as it ends, and report on all."""
     from armland.errors import ConfigurationError
     from armland.experiments.campaign.engine import conduct
+    from armland.experiments.campaign.rare.search import conduct_rare
     from armland.experiments.campaign.stopping import half_width
     from armland.experiments.campaign.store import Store
 
     file = given["store"] or Path("out") / "campaign" / f"{given['file'].stem}.sqlite"
     until = None if given["until"] is None else half_width(given["until"])
+    if given["rare"] and until is not None:
+        raise ConfigurationError("--until is for plain flights; with --rare, --runs says how many there are")
     if file.exists() and not given["resume"]:
         raise ConfigurationError(f"{file} is there already; --resume goes on with it, or name another --out")
     campaign = _campaign(given, file)
@@ -87,7 +112,10 @@ def fly(**given: Any) -> None:
         Store(file, write=True) as store,
         campaign_told(diagnostics(), campaign.job.mission, planned, sum(1 for _ in store.outcomes())) as tell,
     ):
-        watch = conduct(campaign, store, crew, until, lambda row: tell(row.success))
+        if campaign.rare:
+            conduct_rare(campaign, store, crew, lambda row: tell(row.success))
+        else:
+            watch = conduct(campaign, store, crew, until, lambda row: tell(row.success))
     if until is not None and not watch.enough:
         say(
             f"all {planned} flights are flown, and the rates are not known to {given['until']} yet; more --runs with --resume do it"
@@ -99,6 +127,7 @@ def _campaign(given: dict[str, Any], store: Path) -> "Campaign":
     from armland.experiments.campaign.description import check_parameters, read_description
     from armland.experiments.campaign.engine import Campaign
     from armland.experiments.campaign.flight import prepared
+    from armland.experiments.campaign.rare.search import check
     from armland.experiments.campaign.rows import Job, Task
     from armland.experiments.campaign.store import Store
     from armland.experiments.judge.figures import bounds
@@ -115,7 +144,9 @@ def _campaign(given: dict[str, Any], store: Path) -> "Campaign":
     if law is not None and ":" in law:
         law = os.path.abspath(given["file"].parent / law.rpartition(":")[0]) + ":" + law.rpartition(":")[2]
     job = Job(scenario.frozen(), described.mission, law, described.experiment)
-    campaign = Campaign(described, job, runs or 100, {})
+    campaign = Campaign(described, job, runs or (RARE_RUNS if given["rare"] else 100), {}, given["rare"])
+    if campaign.rare:
+        check(described, campaign.runs)
     # What speaks against the first flight of a point speaks against the campaign.
     first = campaign.schedule.task(0)
     limits = bounds(prepared(job, Task(0, 0, first.seed, first.values)).brief)
@@ -139,18 +170,26 @@ def _report(given: dict[str, Any], file: Path, out: Path) -> None:
     from armland.view.campaign.files import write_csv, write_parquet
     from armland.view.campaign.page import page
     from armland.view.campaign.terminal import print_report
+    from armland.view.campaign.worst import strips
 
     def work(results: Results) -> Work:
         with Store(file) as store:
             if not any(True for _ in store.outcomes()):
                 raise ConfigurationError(f"{file} has no rows yet")
             made, table = report(store)
+            drawn = {}
+            if given["figures"] and given["pictures"]:
+                ready()
+                with attempted("pictures of the worst flights"), reported(diagnostics()) as tell:
+                    drawn = strips(
+                        store, made, results.scratch("worst.mcap"), partial(tell, "pictures of the worst flights")
+                    )
         write_csv(results.folder / "rows.csv", table)
         with attempted("rows.parquet"):
             write_parquet(results.folder / "rows.parquet", table)
         if given["figures"]:
             with attempted("report.html"):
-                results.write("report.html", page(made, table, file))
+                results.write("report.html", page(made, table, file, drawn))
         return Work(True, made.result(), lambda folder: print_report(made, file, folder))
 
     publish({**given, "out": out, "figures": False}, "report.json", ("report.html", "rows.*"), work)
@@ -160,6 +199,7 @@ def _report(given: dict[str, Any], file: Path, out: Path) -> None:
     REPORT_EPILOG,
     store=_STORE,
     out=options.option(Path | None, "Folder of the report; beside the store, with its name, if absent."),
+    pictures=_PICTURES,
     **options.SHOWN,
 )
 def report(**given: Any) -> None:

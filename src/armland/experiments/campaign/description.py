@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError
 
 from armland.errors import ConfigurationError
 from armland.experiments.campaign.parameters import DRAWN, Parameter
+from armland.experiments.campaign.summary import FIGURES
 from armland.scenario import Scenario
 from armland.scenario.files.toml import read_toml
 from armland.scenario.quantities import Section, key
@@ -23,6 +24,25 @@ MOST_TRIED = 200
 """Points that are tried on the scenario before anything flies; a later one that it refuses is a row with its error."""
 Design = Literal["random", "latin", "sobol"]
 _Path = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class Failure(Section):
+    """What a flight does that counts as the failure whose rate is asked for."""
+
+    figure: str | None = key(
+        None, "figure that is too large then, as `touchdown.speed_mps`; absent: the mission's own criteria"
+    )
+    above: Annotated[float | None, Field(allow_inf_nan=False, ge=-1e12, le=1e12)] = key(
+        None, "what the figure is above then, SI units and degrees"
+    )
+    stage: Annotated[int, Field(ge=20, le=1_000_000)] = key(100, "flights of each stage of learning, with --rare")
+
+    def _contradictions(self) -> list[str]:
+        if self.figure is not None and self.figure not in FIGURES:
+            return [f"figure = {self.figure!r} is none; there are {', '.join(FIGURES)}"]
+        if (self.figure is None) != (self.above is None):
+            return ["figure and above belong together: `figure = 'touchdown.speed_mps', above = 0.2`"]
+        return []
 
 
 class Description(Section):
@@ -42,6 +62,8 @@ class Description(Section):
     points: Annotated[tuple[dict[str, Any], ...], Field(max_length=MOST_POINTS)] = key(
         (), "values that change together: each table is a point, flown with the same seeds as the others"
     )
+
+    failure: Failure | None = key(None, "the failure whose rate is asked for; the mission's own criteria if absent")
 
     @property
     def drawn(self) -> dict[str, Parameter]:

@@ -31,6 +31,8 @@ class Campaign(NamedTuple):
     """Flights of each point."""
     bounds: dict[str, float]
     """Of figures, see `judge.figures.bounds`."""
+    rare: bool = False
+    """Whether flights are drawn nearer to the failures, see `rare.search`."""
 
     @property
     def schedule(self) -> Schedule:
@@ -44,6 +46,7 @@ class Campaign(NamedTuple):
             "job": self.job._asdict(),
             "runs": self.runs,
             "bounds": self.bounds,
+            "rare": self.rare,
             "files": files_of(self.job),
             "versions": versions(),
         }
@@ -52,7 +55,7 @@ class Campaign(NamedTuple):
 def campaign_of(about: dict[str, Any]) -> Campaign:
     """The campaign of which a store says `about`."""
     description = Description.model_validate_json(json.dumps(about["description"]))
-    return Campaign(description, Job(**about["job"]), about["runs"], about["bounds"])
+    return Campaign(description, Job(**about["job"]), about["runs"], about["bounds"], about.get("rare", False))
 
 
 def conduct(
@@ -132,6 +135,9 @@ def begin(campaign: Campaign, store: Store) -> None:
             raise ConfigurationError(
                 f"{store.file} is of another {what}: {_difference(there[name], here[name])}; name another --out"
             )
+    if there.get("rare", False) != here["rare"]:
+        which = ("without", "with") if here["rare"] else ("with", "without")
+        raise ConfigurationError(f"{store.file} was flown {which[0]} --rare, not {which[1]}; name another --out")
     if there["runs"] != here["runs"]:
         if campaign.description.design == "latin" and campaign.description.drawn:
             raise ConfigurationError(

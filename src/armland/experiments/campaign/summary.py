@@ -71,11 +71,17 @@ class Summary(NamedTuple):
 
 def value(row: Row, figure: str) -> float | None:
     """A figure of `FIGURES` in a row, in the unit of its name; None where the flight has none."""
+    found = raw(row, figure)
+    return None if found is None else found * FIGURES[figure].scale
+
+
+def raw(row: Row, figure: str) -> float | None:
+    """A figure of `FIGURES` in a row, SI units and degrees; None where the flight has none."""
     if figure == "duration_s":
         return float(row["phases"][-1]["end_s"]) if row.get("phases") else None
     group, _, name = figure.rpartition(".")
     found = (row.get(group) or {}).get(name) if group else row.get(name)
-    return None if found is None else float(found) * FIGURES[figure].scale
+    return None if found is None else float(found)
 
 
 def summarise(rows: Sequence[Row], bounds: Mapping[str, float]) -> Summary:

@@ -39,6 +39,18 @@ def build_pad_scene(scenario: Scenario, on_legs: bool = False) -> Scene:
     Raises:
         ModelError: a UAV file that cannot be used.
     """
+    spec, stand = pad_scene_spec(scenario, on_legs)
+    with warnings.catch_warnings():
+        # No name is there twice, and none is saved.
+        warnings.filterwarnings("ignore", message="Attaching a spec with an empty prefix")
+        model = compile_spec(spec, "the scene")
+    set_stops(model, scenario.hinge)
+    settle_solver(model)
+    return _scene(model, stand)
+
+
+def pad_scene_spec(scenario: Scenario, on_legs: bool = False) -> tuple[mujoco.MjSpec, Array]:
+    """The scene, not yet compiled, and the pivot (3,), m, D, of a UAV that stands; arguments and errors as for `build_pad_scene`."""
     spec = mujoco.MjSpec()
     spec.compiler.degree, spec.compiler.autolimits = False, True
     uav = uav_spec(scenario)
@@ -66,13 +78,7 @@ def build_pad_scene(scenario: Scenario, on_legs: bool = False) -> Scene:
     add_contacts(spec, [])
     _let_touch(spec, scenario.pad.friction)
     _add_sensors(spec, PLATFORM if on_legs else DECK)
-    with warnings.catch_warnings():
-        # No name is there twice, and none is saved.
-        warnings.filterwarnings("ignore", message="Attaching a spec with an empty prefix")
-        model = compile_spec(spec, "the scene")
-    set_stops(model, scenario.hinge)
-    settle_solver(model)
-    return _scene(model, stand)
+    return spec, stand
 
 
 def _add_pad(spec: mujoco.MjSpec, scenario: Scenario, stand: Array, eye: Array) -> None:

@@ -87,7 +87,8 @@ def read_log(path: str | Path) -> Log:
 
 
 def _decode(content: Content) -> Log:
-    joints = _number(content.metadata, "joints", LARGEST_ARM)
+    # A landing without an arm has no joint.
+    joints = _number(content.metadata, "joints", LARGEST_ARM, least=0)
     _number(content.metadata, "period_ns", LONGEST_TICK_NS)
     channels = _channels(content)
     layouts = {
@@ -134,12 +135,12 @@ def _length(blocks: list[dict[int, Records]], channels: dict[int, str], complete
     return min(counts.values())
 
 
-def _number(metadata: dict[str, str], name: str, largest: int) -> int:
+def _number(metadata: dict[str, str], name: str, largest: int, least: int = 1) -> int:
     text = metadata.get(name, "")
     if not text:
         raise LogError("it has no metadata of a run: not armland's, or cut off too early")
-    if not (text.isascii() and text.isdigit() and len(text) < 20 and 1 <= int(text) <= largest):
-        raise LogError(f"damaged, its metadata says {name} = {text[:30]!r}; it is between 1 and {largest}")
+    if not (text.isascii() and text.isdigit() and len(text) < 20 and least <= int(text) <= largest):
+        raise LogError(f"damaged, its metadata says {name} = {text[:30]!r}; it is between {least} and {largest}")
     return int(text)
 
 

@@ -34,7 +34,7 @@ def schema_name(message: str) -> str:
 
 
 def schema_text(message: str, joints: int) -> str:
-    """The definition of a message for an arm with `joints` joints.
+    """The definition of a message for an arm with `joints` joints; without an arm, without the fields of its joints.
 
     Raises:
         KeyError: unknown message; the known ones are the keys of `MESSAGES`.
@@ -44,6 +44,9 @@ def schema_text(message: str, joints: int) -> str:
 
 def _line(field: Field, joints: int) -> str:
     length = math.prod(joints if s == "n" else int(s) for s in field.shape)
+    if not length:
+        # ROS 2 knows no array without numbers.
+        return ""
     array = f"[{length}]" if field.shape else ""
     frame = "" if field.frame == "-" else f", frame {field.frame}"
     return f"{_ROS_TYPES[field.type]}{array} {field.name}  # {field.meaning} [{field.unit}]{frame}\n"

@@ -70,7 +70,7 @@ def rates(report: Report) -> Figure | None:
 def spreads(report: Report, table: Table) -> Figure | None:
     """A panel for each figure: its distribution at each point, failed flights included, and its bound."""
     shown = list(table.figures)
-    if not shown:
+    if not shown or not report.points:
         return None
     lines = -(-len(shown) // 4)
     figure = sheet(WIDTH_IN, 1.55 * lines + 0.25)

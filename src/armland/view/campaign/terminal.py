@@ -8,6 +8,7 @@ from rich.text import Text
 from armland.experiments.campaign.answers.report import QUANTILES, PointReport, Report, short
 from armland.experiments.campaign.answers.sensitivity import Influence
 from armland.experiments.margins.flights import shortened
+from armland.view.campaign.rare import counted_lines, print_rare
 from armland.view.tables.verdicts import mark, terminal, titled
 
 MOST_POINTS = 40
@@ -17,7 +18,12 @@ def print_report(report: Report, store: Path, out: Path) -> None:
     """Print rates with their intervals, figures, comparisons, what failure depends on, and the worst flights with their commands."""
     console = terminal()
     console.print(Text(headline(report), style="bold"))
-    _rates(console, report)
+    if report.rare is not None:
+        print_rare(console, report.rare)
+    else:
+        _rates(console, report)
+    for line in counted_lines(report):
+        console.print(Text(line))
     if len(report.points) == 1:
         _figures(console, report.points[0])
     _pairings(console, report)

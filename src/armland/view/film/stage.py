@@ -1,6 +1,7 @@
 """The scene of a film: what flew, composed from the log's scenario, with a camera that has all of it in the picture."""
 
 import warnings
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import mujoco
@@ -9,10 +10,12 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from armland.errors import LogError
+from armland.mission.registry import UNAIDED
 from armland.models.description import compile_spec
 from armland.plant.deviation.bodies import deviate_bodies
 from armland.plant.deviation.drawn import drawn
-from armland.plant.scene.composition import Bond, Scene, build_scene, scene_spec
+from armland.plant.scene.composition import Scene, build_scene, scene_spec
+from armland.plant.scene.pad import build_pad_scene, pad_scene_spec
 from armland.plant.scene.uav import UAV
 from armland.records import Records
 from armland.rotations import Array
@@ -23,6 +26,9 @@ from armland.view.film.water import Water, add_water
 from armland.view.flown import scenario_of
 
 CAMERA = "film"
+
+LEGS = "hexapod"
+"""The mission whose pad stands on a platform on legs."""
 
 SAMPLES = 40
 """Poses of a run that the camera is placed by."""
@@ -65,19 +71,33 @@ def stage_of(log: Log, aspect: float) -> Stage:
     scenario, truth = scenario_of(log), log.messages["truth"]
     if not len(truth):
         raise LogError("the log holds no tick; there is nothing to show")
-    bond: Bond = "hinged" if log.metadata.get("start") == "hinged" else "free"
-    plain = build_scene(scenario, bond)
+    mission = log.metadata.get("mission", "")
+    plain = scene_of(scenario, log.metadata)
     if plain.joints != truth["q"].shape[1]:
         raise LogError(f"the log has {truth['q'].shape[1]} joints where its scenario's arm has {plain.joints}")
-    bare, _ = _dressed(scenario, plain, None)
+    bare, _ = _dressed(scenario, plain, mission, None)
     rows = truth[np.linspace(0, len(truth) - 1, min(SAMPLES, len(truth))).astype(int)]
     near = np.linalg.norm(rows["r"] - rows["ee"], axis=1) < NEAR_M
     framing = framed(*extent(bare, poses(bare, rows[near] if near.any() else rows)), aspect)
-    return Stage(*_dressed(scenario, plain, framing))
+    return Stage(*_dressed(scenario, plain, mission, framing))
 
 
-def _dressed(scenario: Scenario, plain: Scene, framing: Framing | None) -> tuple[Scene, Water | None]:
-    spec, _ = scene_spec(scenario, plain.bond)
+def scene_of(scenario: Scenario, metadata: Mapping[str, str]) -> Scene:
+    """The scene of a log with this `metadata`; of a platform on legs hull and legs are shown where the platform is.
+
+    Raises:
+        ModelError: a file of the scenario is no longer there.
+    """
+    if (mission := metadata.get("mission", "")) in UNAIDED:
+        return build_pad_scene(scenario, mission == LEGS)
+    return build_scene(scenario, "hinged" if metadata.get("start") == "hinged" else "free")
+
+
+def _dressed(scenario: Scenario, plain: Scene, mission: str, framing: Framing | None) -> tuple[Scene, Water | None]:
+    if mission in UNAIDED:
+        spec, _ = pad_scene_spec(scenario, mission == LEGS)
+    else:
+        spec, _ = scene_spec(scenario, plain.bond)
     # A turning rotor is seen as a disc.
     for blade in [g for g in spec.geoms if g.material.endswith("blade")]:
         spec.delete(blade)

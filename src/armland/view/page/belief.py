@@ -29,7 +29,8 @@ def deviations(scenario: Scenario, joints: int, hinged: bool) -> Grid | None:
         joints: of the arm.
         hinged: whether the UAV is bound to the arm: it is calibrated there, and nothing deviates.
     """
-    values = {} if hinged else drawn(scenario, joints)
+    # Without an arm nothing of one deviates.
+    values = {} if hinged else {path: v for path, v in drawn(scenario, joints).items() if np.size(v)}
     if not values:
         return None
     told, meaning = ranges(scenario.deviation), {row.path: row.meaning for row in rows()}

@@ -67,6 +67,8 @@ def limits(result: Mapping[str, Any], run: Flown) -> Grid:
         Limit.UAV_STALE: (f"oldest sample {age:.0f} ms", None),
         Limit.NON_FINITE: ("-", None),
     }
+    if not run.ticks["measurement"]["q"].shape[1]:
+        nearest = {bit: found for bit, found in nearest.items() if bit not in OF_JOINTS}
     out: list[Sequence[Cell | str]] = []
     for bit, (words, share) in nearest.items():
         name = NAMES[bit]
@@ -90,6 +92,9 @@ NAMES = {
     Limit.UAV_STALE: "age of the UAV's samples",
     Limit.NON_FINITE: "numbers that are none",
 }
+
+OF_JOINTS = (Limit.JOINT_POSITION, Limit.JOINT_SPEED, Limit.JOINT_TORQUE, Limit.TORQUE_RATE, Limit.SINGULAR)
+"""What only an arm can come near to."""
 
 WHOLE = "whole flight"
 

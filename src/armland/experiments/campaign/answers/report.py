@@ -9,6 +9,7 @@ from armland.experiments.campaign.answers.paired import Pairing, compare
 from armland.experiments.campaign.answers.sensitivity import Sensitivity, as_numbers, sensitivity
 from armland.experiments.campaign.answers.table import Table, tabulate
 from armland.experiments.campaign.engine import Campaign, campaign_of
+from armland.experiments.campaign.rare.answer import Counted, RareReport, counted, rare_report
 from armland.experiments.campaign.rows import BROKE, KILLED, REFUSED
 from armland.experiments.campaign.stopping import Interval, Watch
 from armland.experiments.campaign.store import Store
@@ -76,6 +77,10 @@ class Report(NamedTuple):
     odd: dict[str, int]
     cpu_s: float
     """Processor's time of a flight, s, mean."""
+    rare: RareReport | None
+    """Of a rare campaign; it has neither points nor pairings nor sensitivity, which would be those of how it was drawn."""
+    counted: tuple[Counted, ...]
+    """Of a plain campaign whose file asks for a failure of its own, at each point."""
 
     def result(self) -> dict[str, Any]:
         """The report as plain data, for JSON."""
@@ -89,6 +94,8 @@ class Report(NamedTuple):
         ]
         data["sensitivity"] = {k: [i._asdict() for i in v] for k, v in self.sensitivity._asdict().items()}
         data["worst"] = [w._asdict() for w in self.worst]
+        data["rare"] = None if self.rare is None else self.rare.result()
+        data["counted"] = [c._asdict() for c in self.counted]
         return data
 
 
@@ -97,11 +104,12 @@ def report(store: Store) -> tuple[Report, Table]:
     about = store.about
     campaign, table = campaign_of(about), tabulate(store)
     names = point_names(campaign.schedule.points)
+    rare = rare_report(campaign, store) if campaign.rare else None
     watch = Watch(len(names), None)
     for run, success in zip(table.run, table.success, strict=True):
         watch.add(int(run), bool(success))
     always = watch.intervals()
-    there = [k for k in range(len(names)) if table.at(k).any()]
+    there = [k for k in range(len(names)) if table.at(k).any() and rare is None]
     points = tuple(_point(table, k, names[k], always[k], campaign.bounds) for k in there)
     paired = (compare(table, there[0], k) for k in there[1:MOST_COMPARED])
     return Report(
@@ -112,11 +120,13 @@ def report(store: Store) -> tuple[Report, Table]:
         len(campaign.schedule),
         points,
         tuple(p for p in paired if p is not None),
-        sensitivity(table),
-        _worst(table, store, campaign.bounds),
+        sensitivity(table) if rare is None else Sensitivity((), ()),
+        _worst(table, store, campaign),
         dict(list(table.reasons.items())[:WORST]),
         table.odd,
         float(np.mean(table.cpu_s)) if len(table.cpu_s) else 0.0,
+        rare,
+        counted(campaign, store, table) if rare is None else (),
     ), table
 
 
@@ -152,16 +162,21 @@ def _point(table: Table, point: int, name: str, always: Interval, bounds: dict[s
     return PointReport(point, name, n, good, Interval(float(wilson.low), float(wilson.high)), always, tuple(found))
 
 
-def _worst(table: Table, store: Store, bounds: dict[str, float]) -> tuple[Worst, ...]:
+def _worst(table: Table, store: Store, campaign: Campaign) -> tuple[Worst, ...]:
     if not len(table.run):
         return ()
+    failure = campaign.description.failure
+    asked = None if failure is None else failure.figure
+    bounds = campaign.bounds if failure is None or asked is None else {asked: failure.above or 0.0}
     shares = np.zeros(len(table.run))
     for key, column in table.figures.items():
         if bounds.get(key, 0.0) > 0.0:
             shares = np.fmax(shares, column / (bounds[key] * FIGURES[key].scale))
     flew = np.array([outcome not in (REFUSED, BROKE, KILLED) for outcome in table.outcome])
-    # What failed in flight, then what did not fly, then what came nearest to a bound.
+    # What failed in flight, then what did not fly, then what came nearest to a bound; where a figure is asked for, by that alone.
     order = np.lexsort((table.run, -shares, ~flew, table.success))[:WORST]
+    if asked is not None and asked in table.figures:
+        order = np.lexsort((table.run, -np.nan_to_num(table.figures[asked], nan=-np.inf)))[:WORST]
     rows = {row.run: row for row in store.rows([int(table.run[i]) for i in order])}
     found = [rows[int(table.run[i])] for i in order]
     return tuple(

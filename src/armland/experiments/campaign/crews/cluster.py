@@ -36,6 +36,13 @@ def cluster(address: str, jobs: int | None = None) -> Crew:
         raise ConfigurationError("--ray needs Ray: install armland[cluster]") from e
     if not _answers(address):
         raise _nobody(address, f"nobody answers within {PATIENCE_S:g} s")
+    _join(address, jobs)
+    return partial(_by_ray, address, jobs or max(int(ray.cluster_resources().get("CPU", 1)), 1))
+
+
+def _join(address: str, jobs: int | None) -> None:
+    import ray
+
     where: dict[str, Any] = {"num_cpus": jobs} if address == "local" else {"address": address}
     try:
         ray.init(
@@ -47,7 +54,6 @@ def cluster(address: str, jobs: int | None = None) -> Crew:
     except (ConnectionError, ValueError, RuntimeError, TimeoutError) as e:
         first = (str(e).strip().splitlines() or [type(e).__name__])[0]
         raise _nobody(address, first[:200]) from e
-    return partial(_by_ray, jobs or max(int(ray.cluster_resources().get("CPU", 1)), 1))
 
 
 def _nobody(address: str, why: str) -> ConfigurationError:
@@ -73,10 +79,13 @@ def _remote(work: Work, job: Job, task: Task, made: str) -> Row | str:
     return here if here != made else work(job, task)
 
 
-def _by_ray(jobs: int, work: Work, job: Job, tasks: Iterator[Task]) -> Iterator[Row]:
+def _by_ray(address: str, jobs: int, work: Work, job: Job, tasks: Iterator[Task]) -> Iterator[Row]:
     import ray
     from ray.exceptions import RayError, RayTaskError, WorkerCrashedError
 
+    # A crew that was called before has left the cluster.
+    if not ray.is_initialized():
+        _join(address, jobs)
     made = json.dumps(versions(), sort_keys=True)
     # Ray flies a task of a worker that dies once more by itself.
     fly = ray.remote(num_cpus=1, max_retries=1)(_remote)
