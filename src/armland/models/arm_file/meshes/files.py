@@ -1,5 +1,7 @@
 """Files of triangles, read: of STL, OBJ, MuJoCo's MSH and Collada no more than where triangles stand.
 
+STL and OBJ are read by trimesh. It knows nothing of MuJoCo's MSH, and for Collada it asks for a package of its own.
+
 | format | what is taken | what is left |
 |---|---|---|
 | `.stl` | triangles, written in bytes or in words | colours, normals |
@@ -35,30 +37,12 @@ def triangles(path: Path) -> Array:
     return found if np.isfinite(found).all() else nothing
 
 
-def _stl(path: Path) -> Array:
-    raw = path.read_bytes()
-    count = int(np.frombuffer(raw, "<u4", 1, 80)[0]) if len(raw) >= 84 else -1
-    if len(raw) == 84 + 50 * count:
-        facets = np.frombuffer(raw, [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")], count, 84)
-        return facets["corners"].astype(float)
-    words = raw.decode("ascii").split()
-    at = [i for i, word in enumerate(words) if word == "vertex"]
-    return np.array([words[i + 1 : i + 4] for i in at], float).reshape(-1, 3, 3)
+def _by_library(path: Path) -> Array:
+    # Not at the top: most arms are read without a mesh.
+    import trimesh
 
-
-def _obj(path: Path) -> Array:
-    points, loops = list[list[float]](), list[list[int]]()
-    for line in path.read_text("utf-8", "replace").splitlines():
-        kind, _, rest = line.partition(" ")
-        if kind == "v":
-            points.append([float(x) for x in rest.split()[:3]])
-        elif kind == "f":
-            told = [int(word.partition("/")[0]) for word in rest.split()]
-            # Counted from 1, or backwards from the last point so far.
-            loops.append([c - 1 if c > 0 else len(points) + c for c in told])
-    counts = np.array([len(loop) for loop in loops], np.int64)
-    corners = np.array([c for loop in loops for c in loop], np.int64)
-    return np.asarray(np.array(points, float).reshape(-1, 3)[_fans(corners, counts)])
+    mesh = trimesh.load_mesh(path, process=False, skip_materials=True)
+    return np.asarray(mesh.triangles, dtype=np.float64)
 
 
 def _msh(path: Path) -> Array:
@@ -164,4 +148,4 @@ def _fans(corners: NDArray[np.int64], counts: NDArray[np.int64]) -> NDArray[np.i
     return np.array(out, np.int64).reshape(-1, 3)
 
 
-_READERS = {".stl": _stl, ".obj": _obj, ".msh": _msh, ".dae": _collada}
+_READERS = {".stl": _by_library, ".obj": _by_library, ".msh": _msh, ".dae": _collada}
