@@ -48,7 +48,7 @@ def test_mission_is_free_of_contradictions(fly_on):
 
 def test_without_a_speed_it_is_the_plain_take_off():
     assert not gives_speed(scenario())
-    assert MISSIONS["takeoff"].phases(scenario()) is PHASES
+    assert MISSIONS["takeoff"].phases(scenario()) == PHASES
 
 
 def test_plan_keeps_the_path_within_the_limits():
