@@ -15,6 +15,7 @@ from armland.mission.reference.moves import (
     LOWER,
     LOWER_S,
     MOVE,
+    NEAR_M,
     NOD,
     NOD_M,
     TRACK,
@@ -159,6 +160,18 @@ def test_arm_that_flees_goes_along_with_the_plate_and_down_from_it_and_then_to_w
     assert apart[2] - (s["p0"] - s["r0"])[0, 2] == pytest.approx(0.15)
 
 
+def test_arm_that_flees_from_a_plate_that_is_still_far_does_not_go_along(made):
+    """Negative control: of a near one it takes the speed at once."""
+    p, s, *_ = made
+    s["pv"] = s["pv0"] = [0.4, 0.0, 0.0]
+    s["v0"] = 0.0
+    for far, moves in ((NEAR_M + 0.01, 0.0), (NEAR_M - 0.01, 0.4)):
+        s["p0"] = s["r0"] + [0.0, 0.0, far]
+        s["p"] = s["p0"] + 0.7 * s["pv"]
+        away = at(made, FLEE, 0.29, 0.6)[0][0] - 0.6
+        assert away == pytest.approx(moves * (0.29 - p["coast"][0]), abs=5e-3)
+
+
 @pytest.mark.parametrize(("falls", "most"), [(0.0, 0.5), (0.3, 0.5), (0.3, 0.8)])
 def test_arm_that_flees_from_a_plate_that_comes_down_is_no_faster_than_its_joints_allow(made, falls, most):
     """Negative control: without a bound it is faster."""
@@ -181,7 +194,7 @@ def test_arm_that_flees_from_a_plate_that_comes_down_is_no_faster_than_its_joint
 @pytest.mark.parametrize("falls", [-0.05, -0.3, -3.0])
 def test_arm_that_flees_comes_to_rest_where_it_may_go_no_lower(made, falls):
     p, s, *_ = made
-    p["floor"], s["pv"], s["v0"], s["p0"] = 0.6, [0.0, 0.0, falls], 0.0, s["p"]
+    p["floor"], s["pv"], s["v0"], s["p0"], s["r0"] = 0.6, [0.0, 0.0, falls], 0.0, s["p"], s["p"] - [0.0, 0.0, 0.05]
     low = min(at(made, FLEE, t, 0.6)[0][2] for t in np.linspace(0.7, 5.0, 50))
     assert 0.6 <= low < 0.6 + FLOOR_M
     h, t = 1e-5, 0.75

@@ -345,6 +345,8 @@ def test_sensor_is_not_blamed_for_a_tool_that_the_arm_did_not_move(bench, follow
         ({}, "magnet_stuck"),
         # A residual pull that healthy plates come off with, a way that is too short, a current that is not yet gone.
         ({"force": 15.0}, "none"),
+        # One that presses the arm down lies on it.
+        ({"up": -1.0}, "none"),
         ({"drawn": 0.001}, "none"),
         ({"off": 850}, "none"),
         ({"off": 0}, "none"),
@@ -356,7 +358,7 @@ def test_plate_sticks_where_the_arm_draws_back_and_a_force_stays(bench, change, 
     kept = bench.kept["decide"]
     bench.kept["act"]["magnet"], kept["seen"]["off"] = change.get("on", 0), change.get("off", 700)
     kept["grip"] = bench.e["r"] + np.array([0.0, 0.0, change.get("drawn", 0.003)])
-    bench.e["hinge_force"] = change.get("force", 20.0) / 3.0 * np.array([1.0, -2.0, 2.0])
+    bench.e["hinge_force"] = change.get("force", 20.0) / 3.0 * np.array([1.0, -2.0, -2.0 * change.get("up", 1.0)])
     assert find(bench, 10, arm=change.get("arm", BACK_OFF)) == found
 
 

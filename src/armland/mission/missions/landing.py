@@ -151,7 +151,7 @@ ROUGH = {
     # A UAV on the magnet that gusts press down is held well; it takes longer until its rotors pull.
     "capture": _BY_NAME["capture"]._replace(timeout_s=PULLS_S),
     # A UAV that air takes down comes after the arm that has missed it.
-    "miss": _BY_NAME["miss"]._replace(arm="flee", duration_s=FLEES_S),
+    "miss": _BY_NAME["miss"]._replace(arm="flee", duration_s=FLEES_S, load="impact"),
 }
 """What is done differently in wind and above a deck that moves."""
 

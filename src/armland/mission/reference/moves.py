@@ -26,6 +26,9 @@ NOD_M = 0.006
 FLOOR_M = 0.05
 """Height above its lowest place over which the arm that draws away from the plate comes to rest."""
 
+NEAR_M = 0.1
+"""Gap up to which a plate may slide over the arm that stands still."""
+
 PEAK, LEAST_LEFT = 35.0 / 16.0, 0.3
 """Largest speed of the septic over its mean; least share of the arm's speed with which it draws away from a plate."""
 
@@ -136,11 +139,13 @@ def _flee(elapsed: float, duration: float, phase: int, p: Record, s: Record, r: 
     left = max(p.flees_mps - s.falls, LEAST_LEFT * p.flees_mps)
     lasts, fade = max(duration, PEAK * p.flees / left), np.exp(-elapsed / p.coast)
     b, b_dot, b_ddot = septic((elapsed - 0.5 * duration) / duration, duration)
+    # From one that is still far it draws away as it is: along with that it might come to the rails.
+    along = 1.0 if s.p0[2] - s.r0[2] < NEAR_M else 0.0
     for i in range(3):
-        more = s.v0[i] - s.pv0[i]
-        r.r[i] = s.p[i] + s.r0[i] - s.p0[i] + more * p.coast * (1.0 - fade)
-        r.v[i] = s.pv[i] + more * fade
-        r.a[i] = s.pa[i] - more / p.coast * fade
+        more = s.v0[i] - along * s.pv0[i]
+        r.r[i] = s.r0[i] + along * (s.p[i] - s.p0[i]) + more * p.coast * (1.0 - fade)
+        r.v[i] = along * s.pv[i] + more * fade
+        r.a[i] = along * s.pa[i] - more / p.coast * fade
         if i < 2:
             apart, v = p.targets[phase, i] - r.r[i], r.v[i]
             r.r[i] += b * apart

@@ -265,7 +265,8 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     seen.short += p.tick_s / SHORT_S * (e.hinge_force[2] - made - seen.short)
     gone = (m.tick - seen.off) * p.tick_s > STUCK_S and seen.off > 0
     leaves = row.arm == BACK_OFF or row.arm == MOVE or row.arm == FLEE
-    pulls = drawn > STUCK_M**2 and _force(e) > p.stuck
+    # What presses the arm down is a UAV that lies on it or hits it, however hard.
+    pulls = drawn > STUCK_M**2 and _force(e) > p.stuck and e.hinge_force[2] <= 0.0
     # One that was not carried yet and lies on the arm may be too weak to rise.
     follows = seen.carried == 1 and kept.decide.retreat > FOLLOWED_M and e.plate_age < SEEN_S and gap < TOUCHES_M**2
     # A plate that sticks pulls with all the thrust beyond the weight.
