@@ -147,6 +147,15 @@ def test_slower_loop_counts_the_same_times_in_fewer_ticks(landing_plan):
     assert p["limit"]["tick_s"][0] == p["refer"]["tick_s"][0] == p["decide"]["tick_s"][0] == 0.0025
 
 
+@pytest.mark.parametrize(("start", "wind", "above"), [("air", 8.0, 0.4), ("air", 0.0, 0.0), ("cradle", 8.0, 0.0)])
+def test_uav_waits_higher_in_wind_for_an_arm_that_comes_and_not_above_one_that_has_let_it_go(
+    landing_plan, start, wind, above
+):
+    """A station that a take-off never reached would be none: there the arm goes away."""
+    sight = tell(telling(landing_plan, {"forecast": {"wind_mps": wind}}, start=start))["act"]["uav"]["sight"]
+    assert sight["above"][0] == above
+
+
 @pytest.mark.parametrize(("wind", "moves"), [(8.0, False), (0.0, True), (0.0, False)])
 def test_uav_that_flies_in_rough_weather_is_asked_for_no_less_than_can_be_braked(wind, moves):
     """What its largest thrust brakes, W − F_min, is no more than what it has beyond its weight, F_max − W."""

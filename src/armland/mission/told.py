@@ -218,6 +218,7 @@ def _refer(p: Records, t: Telling) -> None:
 
 def _uav(p: Records, t: Telling) -> None:
     tell_station(p, t.scenario, t.flyer, _station(t), RIDES_RAD_S)
+    p["sight"]["above"] *= t.start == "air"
     if t.launch is not None:
         p["launch"] = t.launch.velocity
         if t.scenario.place.fly_on:
