@@ -52,6 +52,7 @@ SPARE_S = 0.5
 """Time constant of the thrust that is asked for, of which it is said what it leaves."""
 
 LEAST_SPARE_N = 1e-3
+"""Of a UAV that can hardly hover: what it has to spare is then none."""
 
 BIAS_BLOCKS = 3
 """Blocks of readings after which the force-torque sensor's bias is known."""

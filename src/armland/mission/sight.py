@@ -120,6 +120,17 @@ def know(p: Record, s: Record, plate: Record) -> None:
 
 
 @njit(cache=True)
+def tell_plate(plate: Record, e: Record) -> None:
+    """Put `plate`, of `layouts.plate_layout`, into the estimate `e`: plate and attitude of the UAV."""
+    for i in range(3):
+        e.plate[i], e.plate_v[i], e.plate_a[i] = plate.position[i], plate.velocity[i], plate.acceleration[i]
+        e.omega[i] = plate.omega[i]
+    for i in range(4):
+        e.quat[i] = plate.quat[i]
+    e.plate_valid, e.plate_age = plate.valid, plate.age
+
+
+@njit(cache=True)
 def estimate_plate(lift: float, push: Array, b: Record) -> None:
     """Pose filter on camera and link: plate, and the UAV's attitude on the deck.
 
@@ -138,12 +149,7 @@ def estimate_plate(lift: float, push: Array, b: Record) -> None:
         lift, push = 0.0, push - np.array(gravity)
     follow(head(m), lift, push, gravity, eye, quaternion_of(b.arm.rotation), p.filter, s.filter)
     know(p.filter, s.filter, s.plate)
-    for i in range(3):
-        e.plate[i], e.plate_v[i], e.plate_a[i] = s.plate.position[i], s.plate.velocity[i], s.plate.acceleration[i]
-        e.omega[i] = s.plate.omega[i]
-    for i in range(4):
-        e.quat[i] = s.plate.quat[i]
-    e.plate_valid, e.plate_age = s.plate.valid, s.plate.age
+    tell_plate(s.plate, e)
 
 
 @njit(cache=True)

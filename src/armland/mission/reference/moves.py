@@ -1,4 +1,4 @@
-"""The arm's reference by phase: hold, join, track, close, move, back off, give way, run up, leave; compiled.
+"""The arm's reference by phase: hold, join, track, close, move, back off, give way, run up, leave, flee; compiled.
 
 | symbol | name | unit |
 |---|---|---|
@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from armland.mission.reference.launch import leave, run_up
-from armland.mission.reference.septic import septic
+from armland.mission.reference.septic import PEAK, septic
 from armland.mission.table.phases import ARM
 from armland.records import Record
 
@@ -29,8 +29,8 @@ FLOOR_M = 0.05
 NEAR_M = 0.1
 """Gap up to which a plate may slide over the arm that stands still."""
 
-PEAK, LEAST_LEFT = 35.0 / 16.0, 0.3
-"""Largest speed of the septic over its mean; least share of the arm's speed with which it draws away from a plate."""
+LEAST_LEFT = 0.3
+"""Least share of the arm's speed with which it draws away from a plate."""
 
 LOWER_S = 0.3
 """Time in which a steady descent begins."""

@@ -47,6 +47,7 @@ RISE_MPS, DEEPEST = 0.1, 0.8
 """Speed at which it rises further, and comes back, until it is found; share of the camera's largest depth beyond which it does not."""
 
 LEAST_SPAN_M = 1e-3
+"""Of the search upwards, where the camera sees no further than it begins."""
 
 ASIDE_M = 0.4
 """Largest step sideways: no UAV that has just left the view is further from it."""

@@ -7,7 +7,7 @@ from armland.estimation import deck
 from armland.linking import head
 from armland.mission.estimate import acting_thrust, learn_uplink, predict_torque, watch_downlink
 from armland.mission.screening import screened
-from armland.mission.sight import follow, know
+from armland.mission.sight import follow, know, tell_plate
 from armland.mission.unaided.decide import DESCEND
 from armland.models.environment import apparent_gravity
 from armland.records import Record
@@ -63,9 +63,4 @@ def _follow(b: Record, stands: bool) -> None:
         e.r[i] = eye[i] - p.camera[i]
     follow(head(m), lift, push, gravity, eye, view, p.filter, s.filter)
     know(p.filter, s.filter, s.plate)
-    for i in range(3):
-        e.plate[i], e.plate_v[i], e.plate_a[i] = s.plate.position[i], s.plate.velocity[i], s.plate.acceleration[i]
-        e.omega[i] = s.plate.omega[i]
-    for i in range(4):
-        e.quat[i] = s.plate.quat[i]
-    e.plate_valid, e.plate_age = s.plate.valid, s.plate.age
+    tell_plate(s.plate, e)
