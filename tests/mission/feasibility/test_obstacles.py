@@ -148,6 +148,18 @@ def test_refusal_names_an_end_effector_that_works(gripping):
     check_beside(gripping(0.15, "finger"), Obstacles(gripping(0.15, "finger")))
 
 
+def test_flange_without_a_frame_at_its_outer_end_carries_the_tool_there(tmp_path):
+    """The file's last frame lies at the root of a flange that reaches out by 0.13 m, into what the UAV needs clear."""
+    text = (ARMS / "ok.urdf").read_text("utf-8")
+    flange = '<visual><origin xyz="0 0 0.065"/><geometry><cylinder radius="0.04" length="0.13"/></geometry></visual>'
+    text = text.replace('<link name="tool0"/>', f'<link name="tool0">{flange}</link>')
+    file = tmp_path / "ok.urdf"
+    file.write_text(text, encoding="utf-8")
+    flight = prepare(load_scenario("landing", {"arm": {"file": str(file)}}), "landing", 1)
+    assert flight.scenario.arm.ee == "tool0:z+0.130"
+    assert flight.moved.startswith("arm.ee = 'tool0:z+0.130' chosen, because")
+
+
 def test_planner_and_judge_take_the_same_shapes_for_the_arm_and_the_uav(gripping):
     """Of a scene that the planner has measured nothing is left that the judge alone would see."""
     scenario = gripping(0.15)

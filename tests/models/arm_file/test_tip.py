@@ -6,7 +6,7 @@ import pytest
 from armland.errors import ModelError
 from armland.models.arm_file.reading import read_arm, read_tree
 from armland.models.arm_file.table import Asked
-from armland.models.arm_file.tip import further_out, tip
+from armland.models.arm_file.tip import farther, further_out, tip
 from armland.rotations import matrix
 
 
@@ -45,6 +45,35 @@ def test_axis_after_the_colon_becomes_the_tools(arm, axis):
     wanted = plain[:, "xyz".index(axis[-1])] * (-1.0 if axis[0] == "-" else 1.0)
     np.testing.assert_allclose(turned[:, 2], wanted, atol=1e-12)
     assert np.linalg.det(turned) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("mount", ["z+0.03", "+z + 0.03", "Z+.03", "x+0.03", "-y+0.03"])
+def test_length_after_the_axis_mounts_the_tool_further_out(arm, mount):
+    axis = mount.lower().replace(" ", "").lstrip("+").partition("+")[0]
+    there, further = (arm("ok.urdf", ee=e).chain.ee for e in (f"tool0:{axis}", f"tool0:{mount}"))
+    np.testing.assert_allclose(further.pos - there.pos, 0.03 * matrix(there.quat)[:, 2], atol=1e-12)
+    np.testing.assert_allclose(further.quat, there.quat, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("ee", "match"), [("tool0:z+80", "at most 1 m"), ("tool0:z+", "length in metres"), ("tool0:w+0.1", "x, -x")]
+)
+def test_mount_that_cannot_be_is_refused(arm, ee, match):
+    with pytest.raises(ModelError, match=match):
+        arm("ok.urdf", ee=ee)
+
+
+@pytest.mark.parametrize(
+    ("label", "wanted"),
+    [
+        ("link7", "link7:z+0.107"),
+        ("flange:x", "flange:x+0.107"),
+        ("a:b:-y+0.1", "a:b:-y+0.207"),
+        ("a:b", "a:b:z+0.107"),
+    ],
+)
+def test_further_out_is_said_as_it_is_asked_for(label, wanted):
+    assert farther(label, 0.107) == wanted
 
 
 def test_turned_and_sideways_cancel(arm):

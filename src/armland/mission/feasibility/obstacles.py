@@ -158,6 +158,18 @@ class Obstacles:
         data.mocap_quat[uav] = [1.0, 0.0, 0.0, 0.0]
         return best
 
+    def outermost(self) -> float:
+        """How far what does not move against the tool reaches out beyond the end effector along its z axis, m."""
+        model, data, end = self._model, self._data, self._model.body("armland_sensor")
+        mujoco.mj_kinematics(model, data)
+        out, z = data.body(end.id).xmat[2::3], 0.0
+        for geom in range(model.ngeom):
+            fixed = model.body_weldid[model.geom_bodyid[geom]] == end.weldid[0]
+            if fixed and model.geom(geom).name.startswith(SHAPE):
+                step = data.geom_xpos[geom] - data.body(end.id).xpos
+                z = max(z, float(out @ step) + _reach(model, geom, data.geom_xmat[geom].reshape(3, 3).T @ out))
+        return z
+
     def _outside(self, links: list[str], others: dict[str, tuple[list[str], float]]) -> list[_Pair]:
         # What stands still, as the arm's base, meets no floor; nor does the tool meet what it grips.
         model, pairs = self._model, []
@@ -233,6 +245,14 @@ def _dress(spec: mujoco.MjSpec, links: dict[str, Worn]) -> None:
             )
             kind, called = mujoco.mjtGeom.mjGEOM_MESH, f"{mesh}:{name.removeprefix(PREFIX)}"
             body.add_geom(name=called, type=kind, meshname=mesh, mass=0.0, contype=0, conaffinity=0)
+
+
+def _reach(model: mujoco.MjModel, geom: int, along: Array) -> float:
+    # From a shape's middle along a direction (3,) of its own, m: to its corners, or those of the box around it.
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:
+        first, many = (int(a[model.geom_dataid[geom]]) for a in (model.mesh_vertadr, model.mesh_vertnum))
+        return float((model.mesh_vert[first : first + many] @ along).max())
+    return float(model.geom_aabb[geom, :3] @ along + model.geom_aabb[geom, 3:] @ np.abs(along))
 
 
 def _ends(pairs: list[_Pair]) -> NDArray[np.int64]:

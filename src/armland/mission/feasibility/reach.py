@@ -13,7 +13,7 @@ from armland.mission.table.mission import At, Mission
 from armland.mission.table.phases import Phase
 from armland.models.arm import ArmModel
 from armland.models.arm_file.reading import read_tree
-from armland.models.arm_file.tip import others
+from armland.models.arm_file.tip import farther, others
 from armland.models.description import resolve
 from armland.models.parameters import arm_file
 from armland.models.posture import UPRIGHT, check_path, home_poses, lead, pose
@@ -96,6 +96,7 @@ def check_beside(scenario: Scenario, around: Obstacles) -> None:
     tip = arm_file(scenario).chain.tip
     # The same frame with another axis before other frames.
     ends = sorted(others(read_tree(resolve(scenario.arm.file)), tip), key=lambda e: _frame(e) != _frame(tip.label))
+    ends.append(farther(tip.label, np.ceil(1e3 * around.outermost() - 1e-6) / 1e3))
     found = next((e for e in ends if _clear(scenario, e)), None)
     works = (
         f"--ee '{found}' mounts the tool clear of it, and so does"

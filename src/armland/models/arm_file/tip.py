@@ -1,6 +1,7 @@
 """Which frame of a robot carries the tool, where its user does not say, and which way its axes point.
 
-An end effector is asked for as `FRAME`, or as `FRAME:AXIS` where another axis than z points outwards, e.g. `flange:x`.
+An end effector is asked for as `FRAME`, or as `FRAME:AXIS` where another axis than z points outwards, e.g. `flange:x`. A length after
+the axis mounts the tool so much further out along it, m, where the file has no frame there: `link7:z+0.107`.
 """
 
 import re
@@ -43,6 +44,12 @@ AXES = {
 }
 """Quarter turns that bring z to the axis: about which axis and how many, as a rotation vector over π/2."""
 
+MOUNT = re.compile(r"\s*\+?(-?[xyz])\s*(?:\+\s*(\d*\.?\d+))?\s*", re.IGNORECASE)
+"""What stands after the colon: the axis and how far out along it."""
+
+FARTHEST_M = 1.0
+"""An end effector is mounted at most so far out from a frame; more is a length in millimetres."""
+
 
 class Tip(NamedTuple):
     """The end effector: where the tool is mounted, z outwards."""
@@ -60,25 +67,42 @@ def tip(tree: Tree, asked: str | None) -> Tip:
         ModelError: no such frame, or none that stands out; the message names those there are.
     """
     if asked is not None:
-        name, axis = _asked(tree, asked)
+        name, axis, out = _asked(tree, asked)
         frame = _frame(tree, name)
         notes = (_sideways(tree, frame),) if axis is None else ()
-        return Tip(asked, frame.body, _turned(frame.pose, axis or "z"), tuple(n for n in notes if n))
+        return Tip(asked, frame.body, _mounted(frame.pose, axis or "z", out), tuple(n for n in notes if n))
     frame = _plain(tree)
     axis = outward(tree, frame)
     label = frame.name if axis in (None, "z") else f"{frame.name}:{axis}"
     said = f"end effector: {label!r}, chosen from the file's frames; --ee names another"
-    return Tip(label, frame.body, _turned(frame.pose, axis or "z"), (said,))
+    return Tip(label, frame.body, _mounted(frame.pose, axis or "z", 0.0), (said,))
 
 
-def _asked(tree: Tree, asked: str) -> tuple[str, str | None]:
-    name, colon, axis = asked.rpartition(":")
+def _asked(tree: Tree, asked: str) -> tuple[str, str | None, float]:
+    name, colon, mount = asked.rpartition(":")
     if not colon or any(f.name == asked for f in tree.frames):
-        return asked, None
-    axis = axis.strip().lower().lstrip("+")
-    if axis not in AXES:
-        raise ModelError(f"{tree.what}: end effector {asked!r}: the axis after the colon is one of {', '.join(AXES)}")
-    return name, axis
+        return asked, None, 0.0
+    told = MOUNT.fullmatch(mount)
+    if told is None:
+        raise ModelError(
+            f"{tree.what}: end effector {asked!r}: the axis after the colon is one of {', '.join(AXES)}, with a length in metres where "
+            "the tool is mounted further out, as in z+0.05"
+        )
+    out = float(told[2] or 0.0)
+    if out > FARTHEST_M:
+        raise ModelError(
+            f"{tree.what}: end effector {asked!r} is {out:g} m out from its frame; at most {FARTHEST_M:g} m are"
+        )
+    return name, told[1].lower(), out
+
+
+def farther(label: str, out: float) -> str:
+    """An end effector as it is asked for, `out` m further along its axis."""
+    name, colon, mount = label.rpartition(":")
+    told = MOUNT.fullmatch(mount) if colon else None
+    if told is None:
+        return f"{label}:z+{out:.3f}"
+    return f"{name}:{told[1]}+{float(told[2] or 0.0) + out:.3f}"
 
 
 def _frame(tree: Tree, name: str) -> Frame:
@@ -228,10 +252,11 @@ def _sideways(tree: Tree, frame: Frame) -> str:
     )
 
 
-def _turned(pose: Pose, axis: str) -> Pose:
+def _mounted(pose: Pose, axis: str, out: float) -> Pose:
+    # Turned so that z is the axis, and moved so far along it.
     turn = np.array(AXES[axis])
-    if not turn.any():
-        return pose
-    quat = np.zeros(4)
-    mujoco.mju_axisAngle2Quat(quat, turn / np.linalg.norm(turn), 0.5 * np.pi * np.linalg.norm(turn))
-    return Pose(pose.pos, multiply(pose.quat, quat))
+    if turn.any():
+        quat = np.zeros(4)
+        mujoco.mju_axisAngle2Quat(quat, turn / np.linalg.norm(turn), 0.5 * np.pi * np.linalg.norm(turn))
+        pose = Pose(pose.pos, multiply(pose.quat, quat))
+    return pose.then(Pose(np.array([0.0, 0.0, out]), here().quat)) if out else pose
