@@ -11,7 +11,16 @@ from armland.models.posture import UPRIGHT, pose
 from armland.scenario import load_scenario
 
 BELOW = np.array([0.62, 0.0, 0.62])
-HOW = Sinking(elbow=3, pull=5.0, margin=0.25, stiffness=20.0, gain=0.04, longest=0.1)
+HOW = Sinking(
+    elbow=3,
+    pull=5.0,
+    margin=0.25,
+    stiffness=20.0,
+    gain=0.04,
+    longest=0.1,
+    posture=np.zeros(7),
+    drawn=np.zeros((7, 7)),
+)
 
 
 @pytest.fixture(scope="module")
@@ -88,6 +97,23 @@ def test_sunk_arm_has_nothing_left_of_the_controllers_wish(arm, scenario, home):
     assert left(q) < 0.05
     assert before > 5.0 * left(q)
     np.testing.assert_allclose(held(arm, q)[0], BELOW, atol=2e-4)
+
+
+def test_arm_that_is_drawn_to_a_posture_stays_where_the_controllers_wish_has_it(arm, home):
+    """Elbow turned up, and drawn there: from a pose that has sunk it comes back, to where N τ₀ of the controller is gone."""
+    scenario = load_scenario("landing", {"control": {"posture_rad_s": 6.0}})
+    up, q, still = swivelled(arm, home), home.copy(), np.zeros(arm.joints)
+    told = realisation.told(scenario, arm, UPRIGHT, up)[0]
+    arm.update(up, still)
+    drawn = HOW._replace(posture=up, drawn=36.0 * arm.mass_matrix)
+    assert sink(body_of(arm), q, BELOW, HOW, 400)
+    assert np.abs(q - up).max() > 0.3
+    assert sink(body_of(arm), q, BELOW, drawn, 20)
+    np.testing.assert_allclose(q, up, atol=0.05)
+    arm.update(q, still)
+    wish = null_space_wish(q, still, arm.state[0], told)
+    stiffest = np.linalg.eigvalsh(36.0 * arm.mass_matrix)[-1]
+    assert np.linalg.norm(wish - np.linalg.pinv(arm.jacobian) @ (arm.jacobian @ wish)) < 2e-3 * stiffest
 
 
 def test_elbow_sinks_and_does_not_without_its_pull(arm, home):

@@ -48,7 +48,8 @@ class Body(NamedTuple):
 
 
 class Sinking(NamedTuple):
-    """How the null space sinks: the controller's pull at the elbow, its push from the joints' ends, and the steps."""
+    """How the null space sinks: the controller's pull at the elbow, its push from the joints' ends, what draws it to a posture, and the
+    steps."""
 
     elbow: int
     pull: float  # N
@@ -56,6 +57,8 @@ class Sinking(NamedTuple):
     stiffness: float  # N·m/rad
     gain: float  # rad per N·m
     longest: float  # rad
+    posture: Array  # (n,) rad
+    drawn: Array  # (n, n) N·m/rad, with which it is drawn there; zero where it is not
 
 
 def body_of(arm: ArmModel) -> Body:
@@ -104,15 +107,23 @@ def sink(b: Body, q: Array, point: Array, s: Sinking, steps: int) -> bool:
         _look(b, q, point, e, J)
         _wish(b, q, s, tau)
         dq = tau - J.T @ np.linalg.solve(J @ J.T + DAMPING * np.eye(6), J @ tau)
-        most = np.abs(dq).max() * s.gain
+        gain = _gain(dq, s)
+        most = np.abs(dq).max() * gain
         if most < SUNK_RAD:
             break
-        scale = s.gain * s.longest / max(most, s.longest)
+        scale = gain * s.longest / max(most, s.longest)
         for i in range(q.size):
             q[i] = min(max(q[i] + scale * dq[i], b.low[i]), b.high[i])
         if not reached(b, q, point, 20, 0.0):
             return False
     return True
+
+
+@njit(cache=True)
+def _gain(dq: Array, s: Sinking) -> float:
+    # To where what draws to the posture leaves nothing of a step, and no further than the ends' push allows.
+    drawn = float(np.dot(dq, s.drawn @ dq))
+    return s.gain if drawn == 0.0 else 1.0 / (drawn / float(np.dot(dq, dq)) + 1.0 / s.gain)
 
 
 @njit(cache=True)
@@ -173,7 +184,7 @@ def _newton(b: Body, q: Array, e: Array, J: Array, caution: float) -> None:
 @njit(cache=True)
 def _wish(b: Body, q: Array, s: Sinking, tau: Array) -> None:
     # As `control.laws.nullspace`, without damping: that of an arm at rest.
-    tau[:] = 0.0
+    tau[:] = s.drawn @ (s.posture - q)
     for i in range(s.elbow):
         if b.hinge[i] > 0.5:
             dx, dy = b.anchor[s.elbow, 0] - b.anchor[i, 0], b.anchor[s.elbow, 1] - b.anchor[i, 1]

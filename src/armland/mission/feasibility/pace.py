@@ -63,11 +63,11 @@ def paced(
     Raises:
         WorkspaceError: a move that would take more than `SLOWEST` times as long; names joint and speed or torque.
     """
-    q, times = home, {}
+    q, times, posture = home, {}, home if scenario.control.posture_rad_s > 0.0 else None
     for phase in (p for p in phases if p.name in mission.moves and p.duration_s > 0.0):
         a, b = (_point(at, scenario) for at in mission.moves[phase.name])
         q = lead(arm, q, a)
-        task = _Task(a, b, phase.duration_s, weight if phase.held else 0.0, phase.arm == "join")
+        task = _Task(a, b, phase.duration_s, weight if phase.held else 0.0, phase.arm == "join", posture)
         most, told = max(_needs(arm, q, task, scenario), key=lambda need: need[0])
         if most > SHARE * SLOWEST:
             raise WorkspaceError(f"in the phase {phase.name} joint {told}")
@@ -91,6 +91,7 @@ class _Task(NamedTuple):
     duration: float  # s
     weight: float  # N, carried
     follows: bool  # whether the arm follows the UAV meanwhile
+    posture: Array | None  # (n,) rad, to which the null space is drawn
 
 
 class _Demand(NamedTuple):
@@ -152,7 +153,7 @@ def _too_weak(joint: int, demand: _Demand, arm: ArmModel, scenario: Scenario) ->
 
 def _demands(arm: ArmModel, q: Array, task: _Task, scenario: Scenario) -> Iterator[_Demand]:
     # Along a move, the null space sunk as the controller lets it.
-    body, how, way = body_of(arm), sinking(arm, scenario), task.end - task.start
+    body, how, way = body_of(arm), sinking(arm, scenario, task.posture), task.end - task.start
     q, still = q.copy(), np.zeros(arm.joints)
     for k, u in enumerate(FRACTIONS):
         s, rate, second = septic(float(u), task.duration)

@@ -260,30 +260,30 @@ def _filled(search: _Search, q: Array) -> Iterator[tuple[_Node, Place]]:
 def _judged(search: _Search, catch: Array, q: Array) -> Place | None:
     # By the corners of its way: where the arm waits, the catch's box, above and below the cradle. Branches meet: none is tried again.
     s, grid, up = search.bench.scenario, search.grid, np.array([0.0, 0.0, 1.0])
-    put_down, error = catch + grid.apart, s.bounds.uav_error_m
+    put_down, error, holds = catch + grid.apart, s.bounds.uav_error_m, s.control.posture_rad_s > 0.0
     out, below = error * grid.frame[:, 0], catch - s.place.wait_below_m * up
     lowest = put_down - max(s.place.withdraw_m, s.place.search_m) * up
     aside = (0.5 * (s.cradle.gap_m - s.arm.width_m) - s.control.approach.clearance_m) * grid.frame[:, 1]
-    ends = (error * up, out, -out, aside, -aside)
+    ends = error * up, out, -out, aside, -aside
     corners = [Stop(below, catch), Stop(lowest, put_down), *(Stop(catch + p, catch + p, AT_THE_ENDS_M) for p in ends)]
     corners += [Stop(p, p) for p in (catch, put_down + s.place.above_m * up)]
-    merit, home, known = np.inf, q, search.barren.setdefault(catch.tobytes(), [])
+    merit, home, known, how = np.inf, q, search.barren.setdefault(catch.tobytes(), []), search.how
     for k, (point, pivot, slack) in enumerate(corners):
         there = q.copy()
-        reaches = sink(search.body, there, point, search.how, AT_ONCE // 4)
+        reaches = sink(search.body, there, point, how, AT_ONCE // 4)
         if k == 0:
             if not reaches or any(np.abs(there - other).max() < SAME_RAD for other in known):
                 return None
             search.bench.obstacles.put_cradle(put_down, grid.heading)
             home = there
+            q, how = (home, sinking(search.bench.arm, s, home)) if holds else (q, how)
         one = _merit(search.bench, there, Stop(point, pivot, slack)) if reaches else None
         if one is None:
             known.append(home)
             return None
         merit = min(merit, one)
-    return Place(
-        catch, put_down, grid.heading, home, merit - search.bench.nearness * float(np.linalg.norm(catch - grid.wanted))
-    )
+    merit -= search.bench.nearness * float(np.linalg.norm(catch - grid.wanted))
+    return Place(catch, put_down, grid.heading, home, merit)
 
 
 def _merit(bench: Bench, q: Array, stop: Stop) -> float | None:

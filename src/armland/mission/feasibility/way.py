@@ -8,7 +8,7 @@
 
 The controller lets the arm follow N τ₀ until nothing of it is left: elbow low, joints away from their ends. How fast it gets there
 the joints' dry friction says, which nobody knows: an arm may keep the null space in which it began, or sink on its way. Both of
-`WAYS` have to be clear.
+`WAYS` have to be clear. An arm whose null space is drawn to its first pose, `control.posture_rad_s`, goes by that alone.
 """
 
 from typing import NamedTuple
@@ -34,6 +34,9 @@ WAYS = {
 }
 """How the null space may go along: what is said of it -> steps where the arm waits, and at each point of its way."""
 
+HELD = {", its null space drawn to where it began": (0, 6)}
+"""Likewise, of an arm whose null space is drawn to a posture."""
+
 YIELDING, STEP_RAD = 0.04, 0.1
 """rad per N·m of the wish, and longest step. One over the stiffest push from a joint's end and
 the elbow's pull, 25 N·m/rad: steps do not overshoot."""
@@ -43,6 +46,10 @@ MARGINS, SIGMAS = 2.0, 1.2
 
 AT_THE_ENDS_M = 0.008
 """By how much clearances may be less at the farthest places to which the arm follows the UAV, where it seldom is, m."""
+
+
+_SHARES = ((0.25, 0.5, 0.75, 1.0), (0.25, 0.5, 0.75, 1.0), (1.0,))
+"""Of the way from where the arm waits to the farthest places along each axis."""
 
 
 class Stop(NamedTuple):
@@ -56,7 +63,8 @@ class Stop(NamedTuple):
 
 def stops(points: Array, scenario: Scenario, start: Start) -> list[Stop]:
     """Where the UAV is at each of the mission's `points` (k, 3), m, D: on the arm, except where the arm is below its station or the
-    cradle; then, of a mission that begins in the air, the farthest places to which the arm follows the UAV.
+    cradle; then, of a mission that begins in the air, the farthest places to which the arm follows the UAV, and on the way there from
+    where it waits those that are aside: between the rails the wrist may be wider than above them.
     """
     stations = [np.array(scenario.place.catch_m), np.array(scenario.place.put_down_m)]
     out = []
@@ -70,7 +78,7 @@ def stops(points: Array, scenario: Scenario, start: Start) -> list[Stop]:
             for end in (low, high):
                 there = catch.copy()
                 there[axis] = end[axis]
-                out.append(Stop(there, there, AT_THE_ENDS_M))
+                out += [Stop(points[0] + share * (there - points[0]), there, AT_THE_ENDS_M) for share in _SHARES[axis]]
     return out
 
 
@@ -87,8 +95,9 @@ def check_clear(arm: ArmModel, q: Array, way: list[Stop], scenario: Scenario, ob
     Raises:
         WorkspaceError: what comes too near to what, or which of the supervisor's margins is left, and where.
     """
-    body, how, least = body_of(arm), sinking(arm, scenario), np.inf
-    for told, (first, then) in WAYS.items():
+    holds, least = scenario.control.posture_rad_s > 0.0, np.inf
+    body, how = body_of(arm), sinking(arm, scenario, q if holds else None)
+    for told, (first, then) in (HELD if holds else WAYS).items():
         there = q.copy()
         for k, stop in enumerate(way):
             if not sink(body, there, stop.point, how, then if k else first):
@@ -97,16 +106,23 @@ def check_clear(arm: ArmModel, q: Array, way: list[Stop], scenario: Scenario, ob
     return least
 
 
-def sinking(arm: ArmModel, scenario: Scenario) -> Sinking:
+def sinking(arm: ArmModel, scenario: Scenario, posture: Array | None = None) -> Sinking:
     """How the null space of the scenario's arm sinks.
+
+    Args:
+        arm: the arm model; its state is overwritten where there is a posture.
+        scenario: believed.
+        posture: pose (n,), rad, to which it is drawn by `control.posture_rad_s`; none if absent.
 
     Raises:
         ConfigurationError: the arm has no joint of the name that `arm.elbow_joint` gives.
     """
-    c = scenario.control
-    return Sinking(
-        elbow_of(scenario, arm), c.elbow_force_n, c.range_margin_rad, c.range_stiffness_nm, YIELDING, STEP_RAD
-    )
+    c, there, drawn = scenario.control, np.zeros(arm.joints), np.zeros((arm.joints, arm.joints))
+    if posture is not None:
+        arm.update(posture, there)
+        there, drawn = posture.copy(), c.posture_rad_s**2 * arm.mass_matrix
+    elbow, margin, stiffness = elbow_of(scenario, arm), c.range_margin_rad, c.range_stiffness_nm
+    return Sinking(elbow, c.elbow_force_n, margin, stiffness, YIELDING, STEP_RAD, there, drawn)
 
 
 def _where(stop: Stop) -> str:

@@ -15,8 +15,9 @@ import numpy as np
 
 from armland.models.airframe.file import foreign_of
 from armland.models.airframe.size import Size, size_of
+from armland.models.description import ASSETS, resolve
 from armland.models.parameters import plate_mass, uav_parameters
-from armland.models.weather import ROOMY, USUAL, started
+from armland.models.weather import POSTURE_RAD_S, ROOMY, USUAL, started
 from armland.scenario import Scenario
 from armland.scenario.tables import update
 
@@ -188,8 +189,15 @@ def sized(scenario: Scenario) -> Scenario:
     scenario = scenario.resolved(_told(scenario))
     for first in (True, False):
         scenario = scenario.resolved(_changes(scenario, [r for r in RULES if (r.key in FIRST) is first]))
-    scenario = scenario.resolved(_shifted(scenario))
+    scenario = scenario.resolved(_shifted(scenario)).resolved(_posed(scenario))
     return scenario.resolved(_outdoors(scenario)) if scenario.foretold_mps > 0.0 or scenario.foretold_deck else scenario
+
+
+def _posed(scenario: Scenario) -> dict[str, Any]:
+    # Links whose weights are wrong drive a free null space by up to 0.5 rad within a landing. The LWR's was tried as the paper has it;
+    # of another arm only the way that was checked is known to be clear.
+    own = resolve(scenario.arm.file).parent == ASSETS or is_settled(scenario, "control.posture_rad_s")
+    return {} if own else {"control": {"posture_rad_s": POSTURE_RAD_S}}
 
 
 def _outdoors(scenario: Scenario) -> dict[str, Any]:
