@@ -130,7 +130,8 @@ def _simulated(scenario: Scenario, made: Plan) -> Flight:
         # An experiment sets the UAV's own controller as well.
         scenario = fitted(scenario, made.scenario, made.experiment)
     simulator = Simulator(scenario, made.home, made.mission.start, made.names)
-    check_wind(scenario, simulator.scene.uav_mass, simulator.timed_wind)
+    # Where it foretells wind, a mission lets the UAV lean further than in calm air.
+    check_wind(scenario, simulator.scene.uav_mass, simulator.timed_wind, made.scenario.control.station.tilt_max_rad)
     if made.mission.start == "air":
         check_start(scenario, simulator.scene, made.home)
     return Flight(scenario, made, simulator, Controller(made), metadata_of(scenario, made, simulator.scene))

@@ -6,7 +6,7 @@ import pytest
 from armland.errors import WorkspaceError
 from armland.experiments.episode import fly_prepared, prepare
 from armland.mission.feasibility.obstacles import Obstacles
-from armland.mission.feasibility.way import AT_ONCE, WAYS, check_clear, sinking, stops
+from armland.mission.feasibility.way import AT_ONCE, WAYS, check_clear, drawn, sinking, stops
 from armland.models.nearby import body_of, sink
 from armland.scenario import load_scenario
 
@@ -68,7 +68,7 @@ def test_arm_that_holds_its_posture_is_flown_as_it_is_expected():
         scenario = load_scenario("landing", {"control": {"posture_rad_s": rate}, "deviation": {"level": "published"}})
         ready = prepare(scenario, "landing", 4)
         arm, q, ticks = ready.plan.arm, ready.plan.home.copy(), fly_prepared(ready).ticks
-        held = sinking(arm, scenario.replaced({"control": {"posture_rad_s": 6.0}}).believed(), q)
+        held = drawn(sinking(arm, scenario), arm, scenario.replaced({"control": {"posture_rad_s": 6.0}}), q)
         assert sink(body_of(arm), q, ticks["estimate"]["r"][-1], held, AT_ONCE)
         apart[rate] = np.abs(ticks["measurement"]["q"][-1] - q).max()
     assert apart[6.0] < 0.1

@@ -131,7 +131,14 @@ def test_arm_that_comes_with_armland_keeps_every_bit(arm):
 
 
 def test_file_of_another_kind_is_refused(tmp_path):
-    for text, words in (("<sdf/>", "export URDF or MJCF"), ("<a/>", "known are <robot>"), ("", "not well-formed")):
+    for text, words in (
+        ("<sdf/>", "export URDF or MJCF"),
+        ("<mujocoinclude/>", "give the file that includes it"),
+        ("<mujoco><body/></mujoco>", "no <body> in its <worldbody>.*give the file that includes it"),
+        ("<mujoco><worldbody/></mujoco>", "no <body> in its <worldbody>"),
+        ("<a/>", "known are <robot>"),
+        ("", "not well-formed"),
+    ):
         path = tmp_path / "arm.xml"
         path.write_text(text, encoding="utf-8")
         with pytest.raises(ModelError, match=words):

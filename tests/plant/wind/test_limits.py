@@ -48,6 +48,18 @@ def test_what_is_refused_names_the_lean_and_a_wind_that_flies(landing):
         check(landing(air={"wind_mps": most + 0.2}))
 
 
+def test_wind_that_a_mission_leans_against_is_flown_until_no_lean_holds_the_drag(landing):
+    """14 m/s ask for 0.39 rad. 20.8 m/s blow at 12.5 m/s there, faster than the rotors move air through them at any lean."""
+    air, own = {"wind_mps": 14.0}, {"hover": {"tilt_max_rad": 0.56}}
+    s = landing(air=air, onboard=own)
+    check_wind(s, MASS, timed_wind(s), 0.52)
+    with pytest.raises(ConfigurationError, match=r"control.station.tilt_max_rad = 0.3;"):
+        check(s)
+    s = landing(air={"wind_mps": 20.8}, onboard=own)
+    with pytest.raises(ConfigurationError, match=r"2\.\d\d N of drag at no lean; this UAV can fly in 1[12]\.\d\d m/s"):
+        check_wind(s, MASS, timed_wind(s), 0.55)
+
+
 def test_the_uavs_own_bound_counts_as_well(landing):
     s = landing(air={"wind_mps": 8.0}, onboard={"hover": {"tilt_max_rad": 0.15}})
     with pytest.raises(ConfigurationError, match=r"onboard.hover.tilt_max_rad = 0.15"):

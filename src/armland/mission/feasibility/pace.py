@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.errors import WorkspaceError
-from armland.mission.feasibility.way import AT_ONCE, ON_THE_WAY, sinking
+from armland.mission.feasibility.way import AT_ONCE, ON_THE_WAY, drawn, sinking
 from armland.mission.reference.septic import septic
 from armland.mission.table.mission import At, Mission
 from armland.mission.table.phases import Phase
@@ -153,7 +153,9 @@ def _too_weak(joint: int, demand: _Demand, arm: ArmModel, scenario: Scenario) ->
 
 def _demands(arm: ArmModel, q: Array, task: _Task, scenario: Scenario) -> Iterator[_Demand]:
     # Along a move, the null space sunk as the controller lets it.
-    body, how, way = body_of(arm), sinking(arm, scenario, task.posture), task.end - task.start
+    body, how, way = body_of(arm), sinking(arm, scenario), task.end - task.start
+    if task.posture is not None:
+        how = drawn(how, arm, scenario, task.posture)
     q, still = q.copy(), np.zeros(arm.joints)
     for k, u in enumerate(FRACTIONS):
         s, rate, second = septic(float(u), task.duration)

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from armland.mission.feasibility.obstacles import Obstacles
-from armland.mission.feasibility.way import AT_ONCE, AT_THE_ENDS_M, MARGINS, SIGMAS, Stop, sinking
+from armland.mission.feasibility.way import AT_ONCE, AT_THE_ENDS_M, MARGINS, SIGMAS, Stop, drawn, sinking
 from armland.models.arm import ArmModel
 from armland.models.arm_file.strength import poses, reach
 from armland.models.description import EE_SITE
@@ -276,7 +276,7 @@ def _judged(search: _Search, catch: Array, q: Array) -> Place | None:
                 return None
             search.bench.obstacles.put_cradle(put_down, grid.heading)
             home = there
-            q, how = (home, sinking(search.bench.arm, s, home)) if holds else (q, how)
+            q, how = (home, drawn(how, search.bench.arm, s, home)) if holds else (q, how)
         one = _merit(search.bench, there, Stop(point, pivot, slack)) if reaches else None
         if one is None:
             known.append(home)

@@ -96,7 +96,8 @@ def check_clear(arm: ArmModel, q: Array, way: list[Stop], scenario: Scenario, ob
         WorkspaceError: what comes too near to what, or which of the supervisor's margins is left, and where.
     """
     holds, least = scenario.control.posture_rad_s > 0.0, np.inf
-    body, how = body_of(arm), sinking(arm, scenario, q if holds else None)
+    body, how = body_of(arm), sinking(arm, scenario)
+    how = drawn(how, arm, scenario, q) if holds else how
     for told, (first, then) in (HELD if holds else WAYS).items():
         there = q.copy()
         for k, stop in enumerate(way):
@@ -106,23 +107,21 @@ def check_clear(arm: ArmModel, q: Array, way: list[Stop], scenario: Scenario, ob
     return least
 
 
-def sinking(arm: ArmModel, scenario: Scenario, posture: Array | None = None) -> Sinking:
-    """How the null space of the scenario's arm sinks.
-
-    Args:
-        arm: the arm model; its state is overwritten where there is a posture.
-        scenario: believed.
-        posture: pose (n,), rad, to which it is drawn by `control.posture_rad_s`; none if absent.
+def sinking(arm: ArmModel, scenario: Scenario) -> Sinking:
+    """How the null space of the scenario's arm sinks where nothing draws it to a posture.
 
     Raises:
         ConfigurationError: the arm has no joint of the name that `arm.elbow_joint` gives.
     """
-    c, there, drawn = scenario.control, np.zeros(arm.joints), np.zeros((arm.joints, arm.joints))
-    if posture is not None:
-        arm.update(posture, there)
-        there, drawn = posture.copy(), c.posture_rad_s**2 * arm.mass_matrix
+    c, none = scenario.control, np.zeros(arm.joints)
     elbow, margin, stiffness = elbow_of(scenario, arm), c.range_margin_rad, c.range_stiffness_nm
-    return Sinking(elbow, c.elbow_force_n, margin, stiffness, YIELDING, STEP_RAD, there, drawn)
+    return Sinking(elbow, c.elbow_force_n, margin, stiffness, YIELDING, STEP_RAD, none, np.outer(none, none))
+
+
+def drawn(how: Sinking, arm: ArmModel, scenario: Scenario, posture: Array) -> Sinking:
+    """The same where the null space is drawn to a posture (n,), rad, by `control.posture_rad_s`; the arm's state is overwritten."""
+    arm.update(posture, np.zeros(arm.joints))
+    return how._replace(posture=posture.copy(), drawn=scenario.control.posture_rad_s**2 * arm.mass_matrix)
 
 
 def _where(stop: Stop) -> str:

@@ -8,7 +8,7 @@ import mujoco
 
 from armland.errors import ModelError
 from armland.models.arm_file.chain import Chain, chain
-from armland.models.arm_file.formats.mjcf import read_mjcf
+from armland.models.arm_file.formats.mjcf import PART, read_mjcf
 from armland.models.arm_file.formats.text import read_root
 from armland.models.arm_file.formats.urdf import read_urdf
 from armland.models.arm_file.shapes import clothed
@@ -86,5 +86,5 @@ def read_tree(path: Path, kind: str = "arm file") -> Tree:
         return read_urdf(root, path, what)
     if root.tag == "mujoco":
         return read_mjcf(root, path, what)
-    hint = "; that is SDF: export URDF or MJCF" if root.tag == "sdf" else ""
+    hint = {"sdf": "; that is SDF: export URDF or MJCF", "mujocoinclude": f"; {PART}"}.get(root.tag, "")
     raise ModelError(f"{what} has the root element <{root.tag}>; known are <robot> (URDF) and <mujoco>{hint}")

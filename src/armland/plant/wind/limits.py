@@ -48,13 +48,14 @@ def lift_gain(rotors: Record, pull: float, wind: Array, up: Array) -> float:
     return float(gain)
 
 
-def check_wind(scenario: Scenario, mass: float, timed: Array) -> None:
+def check_wind(scenario: Scenario, mass: float, timed: Array, lean: float = 0.0) -> None:
     """Refuse a steady wind in which the UAV cannot hover within its own limits.
 
     Args:
         scenario: as it flies.
         mass: kg, of all that flies.
         timed: (k, 3) m/s, W, of `wind.timed.timed_wind`.
+        lean: rad, that the ground asks of the UAV at most, where that is more than in calm air.
 
     Raises:
         ConfigurationError: the wind at the catch, what it asks for, the bound, and the strongest wind that can be flown.
@@ -62,13 +63,14 @@ def check_wind(scenario: Scenario, mass: float, timed: Array) -> None:
     if not scenario.air.blows:
         return
     speed = float(np.linalg.norm(steady_wind(scenario, height_of_catch(scenario), timed)))
-    found = _beyond(scenario, mass, speed)
+    lean = max(lean, scenario.control.station.tilt_max_rad)
+    found = _beyond(scenario, mass, speed, lean)
     if not found:
         return
     low, high = 0.0, speed
     for _ in range(SEARCHES):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _beyond(scenario, mass, middle) else (middle, high)
+        low, high = (low, middle) if _beyond(scenario, mass, middle, lean) else (middle, high)
     a = scenario.air
     where = f"air.wind_mps = {a.wind_mps:g}" if a.trace is None else "air.trace"
     most = (
@@ -80,23 +82,21 @@ def check_wind(scenario: Scenario, mass: float, timed: Array) -> None:
     )
 
 
-def _beyond(scenario: Scenario, mass: float, speed: float) -> str:
-    # What a steady wind of `speed` m/s asks for too much; empty where nothing.
-    own, station, weight = (
-        scenario.onboard.hover,
-        scenario.control.station,
-        -mass * scenario.environment.gravity_mps2[2],
-    )
+def _beyond(scenario: Scenario, mass: float, speed: float, most: float) -> str:
+    # What a steady wind of `speed` m/s asks for too much; empty where nothing. The ground asks for a lean of up to `most` rad.
+    own, weight = scenario.onboard.hover, -mass * scenario.environment.gravity_mps2[2]
     drag, (_, static) = scenario.uav.drag_nspm * speed, lift_range(scenario)
     lean = float(np.arctan2(drag, weight))
-    bounds = {"onboard.hover.tilt_max_rad": own.tilt_max_rad, "control.station.tilt_max_rad": station.tilt_max_rad}
+    bounds = {"onboard.hover.tilt_max_rad": own.tilt_max_rad, "control.station.tilt_max_rad": most}
     name = min(bounds, key=lambda n: bounds[n])
     if lean > bounds[name]:
-        return f"{drag:.2f} N of drag, against which the UAV would lean {lean:.3f} rad; {name} = {bounds[name]:g}"
+        return f"{drag:.2f} N of drag, against which the UAV would lean {lean:.3f} rad; {name} = {bounds[name]:.3g}"
     thrust = min(own.thrust_max_n, scenario.control.thrust.ceiling * static)
     lift = sustained(rotors_of(scenario)._replace(static=thrust), speed, scenario.uav.drag_nspm)
     if not scenario.rotors.inflow:
         lift = float(np.sqrt(max(thrust**2 - drag**2, 0.0)))
+    if lift <= 0.0:
+        return f"its rotors hold {drag:.2f} N of drag at no lean"
     if lift < weight:
         return f"leaning against {drag:.2f} N of drag its rotors carry {lift:.2f} N of its {weight:.2f} N"
     return ""

@@ -43,6 +43,9 @@ OWN = {"speed": "joint_speed_rad_s", "torque_rate": "torque_rate_nm_s"}
 
 UNKNOWN = re.compile(r"unrecognized attribute: '([^']+)' Element '([^']+)'")
 
+PART = "it may be a part that other files include; give the file that includes it"
+"""What is said of a file without a robot."""
+
 TINY = 1e-9
 """kg and kg·m² that stand for nothing while the file is compiled."""
 
@@ -59,6 +62,8 @@ def read_mjcf(root: ET.Element, path: Path, what: str) -> Tree:
         ModelError: what MuJoCo complains of, or a body without mass where its meshes are missing.
     """
     root = included(root, path, what)
+    if root.find("./worldbody//body") is None and root.find("./worldbody//frame") is None:
+        raise ModelError(f"{what} has no <body> in its <worldbody>: {PART}")
     own = _own(root, what)
     model, complaints, marks = _compiled(_robot(root), path, what)
     written = {j.get("name", ""): j for j in root.iter("joint")}
