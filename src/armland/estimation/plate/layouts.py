@@ -15,6 +15,10 @@ FORGOTTEN_S, FELT_S = 0.5, 2.0
 means by then, is nearly at rest. Likewise where the UAV says what it feels: a gust that ends is known, and what is left of its
 accelerometers' bias, 0.05 m/s², makes 0.1 m."""
 
+UNFELT_MPS2 = 0.5
+"""Acceleration that a UAV may miss which says what it feels: its accelerometers' bias of up to 50 mg, and 0.03 rad of tilt. With the
+2 m/s² of one that does not, three images that scatter more than they claim made a UAV that hovers one that is 10 m away in 2 s."""
+
 FACE_DOWN = (0.0, 1.0, 0.0, 0.0)
 """body<-marker: the printed face looks down."""
 
@@ -125,6 +129,8 @@ def told(scenario: Scenario, mass: float, lever: Array, gust: float = 0.0) -> Re
     for name in ("white", "blind", "walk", "align_walk", "gate", "restart_after"):
         p[name] = getattr(f, name)
     p["tilt_prior"], p["speed_prior"], p["bias_prior"] = f.tilt_prior_rad, f.speed_prior_mps, f.bias_prior_mps2
+    if gust > 0.0:
+        p["bias_prior"] = min(f.bias_prior_mps2, UNFELT_MPS2)
     # An attitude that comes late for good is not a stale one.
     late = round(1e-3 * scenario.link.downlink_delay_ms / tick_s)
     p["hold"], p["age_max"] = round(f.hold_s / tick_s) + late, round(f.age_max_s / tick_s) + late
