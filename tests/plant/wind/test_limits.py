@@ -4,12 +4,13 @@ import re
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from armland.errors import ConfigurationError
 from armland.mission.belief import rotors_of
 from armland.models.inflow import sustained
 from armland.plant.devices import rotors as device
-from armland.plant.wind.limits import check_wind, lift_gain, steady_wind
+from armland.plant.wind.limits import check_wind, holds_height_in, left_in_gust, lift_gain, steady_wind, told_gusts
 from armland.plant.wind.profile import speed_at
 from armland.plant.wind.timed import timed_wind
 
@@ -101,3 +102,43 @@ def test_gain_in_wind_is_that_of_level_flight(landing, speed):
     assert pull / lift_gain(told[0], pull, wind, up / pull) == pytest.approx(5.0, rel=1e-6)
     told["inflow"] = 0
     assert lift_gain(told[0], pull, wind, up / pull) == 1.0
+
+
+def held(scenario, w20, gust, lean, thrust):
+    """Forces along and up, N, on a UAV that leans in a gust, by (I.1) and (I.2) solved by SciPy, another way than `inflow` does."""
+    own, mean = rotors_of(scenario), speed_at(scenario.replaced({"air": {"wind_mps": w20}}), scenario.place.catch_m[2])
+    along, down, one = mean + 0.196 * w20 * gust, 0.1 * w20 * gust, thrust / own.number
+    v_h = np.sqrt(one / own.disc)
+    x, c = (along * np.cos(lean) - down * np.sin(lean)) / v_h, (along * np.sin(lean) + down * np.cos(lean)) / v_h
+    most = 1.0 + own.slope * (1.0 - c) + own.advance * x * x
+
+    def left(w):
+        return w * np.hypot(x, w + c) - (most - own.slope * w)
+
+    pull = thrust * (most - own.slope * brentq(left, 0.0, 10.0))
+    drag = scenario.uav.drag_nspm
+    return pull * np.sin(lean) - drag * along, pull * np.cos(lean) - drag * down - MASS * 9.81
+
+
+@pytest.mark.parametrize(("gust", "most"), [(1.0, 12.94), (2.0, 9.28), (3.0, 7.17)])
+def test_wind_in_which_gusts_leave_just_enough_thrust(landing, gust, most):
+    """At the bound a lean holds drag and weight both, and none does in a wind that is a tenth stronger."""
+    s = landing()
+    w20 = holds_height_in(s, MASS, gust)
+    assert w20 == pytest.approx(most, abs=0.05)
+
+    def best(w20):
+        leans = np.deg2rad(np.arange(0.0, 60.0, 0.25))
+        return max(min(held(s, w20, gust, lean, 7.0)) for lean in leans)
+
+    assert abs(best(w20)) < 0.1
+    assert best(1.1 * w20) < -0.1
+    assert left_in_gust(s, MASS, 0.9 * w20, gust) > 0.1
+
+
+def test_gusts_that_take_it_down_are_told_and_others_not(landing):
+    calm, rough = (landing(forecast={"wind_mps": w}) for w in (8.0, 12.0))
+    assert told_gusts(calm, MASS) == ""
+    assert re.search(
+        r"in 12 m/s .* two standard deviations up to \d+\.\d m/s, of one up to \d+\.\d m/s", told_gusts(rough, MASS)
+    )

@@ -127,11 +127,14 @@ def _fly(mission: str, given: dict[str, Any]) -> NoReturn:
     tell_uav(loaded, diagnostics())
     console = ready(joints_of(loaded))
     from armland.experiments.episode import prepare
+    from armland.plant.wind.limits import told_gusts
 
     with patiently(diagnostics()):
         flight = prepare(loaded, mission, law=given["law"], experiment=given.get("experiment"))
     if moved := flight.moved or _roomier(loaded, flight.scenario):
         console.print(f"place: {moved}", highlight=False, markup=False, soft_wrap=True)
+    if gusts := told_gusts(flight.scenario, flight.simulator.scene.uav_mass):
+        console.print(f"wind: {gusts}", highlight=False, markup=False, soft_wrap=True)
     if given["seeds"] > 1:
         _campaign(flight, mission, given, console)
     _single(flight, mission, given, console, script)

@@ -1,4 +1,4 @@
-"""What the steady wind asks of a UAV that hovers in it: how far it leans, what its rotors gain, and whether it can."""
+"""What wind asks of a UAV that hovers in it: how far it leans, what its rotors gain, whether it can, and up to which gusts."""
 
 import numpy as np
 
@@ -6,12 +6,19 @@ from armland.errors import ConfigurationError
 from armland.mission.belief import rotors_of
 from armland.models.airframe.lift import lift_range
 from armland.models.inflow import factor_at_speed, sustained
+from armland.models.weather import expected
 from armland.plant.wind.profile import height_of_catch, speed_at, towards
 from armland.records import Record
 from armland.rotations import Array
 from armland.scenario import Scenario
 
 SEARCHES = 40
+
+LEANS = np.deg2rad(np.arange(0.0, 90.0, 0.25))
+"""Leans that are tried against a gust, rad."""
+
+STRONGEST_MPS = 60.0
+"""W₂₀ that is looked at at most."""
 
 
 def steady_wind(scenario: Scenario, height: float, timed: Array) -> Array:
@@ -100,3 +107,55 @@ def _beyond(scenario: Scenario, mass: float, speed: float, most: float) -> str:
     if lift < weight:
         return f"leaning against {drag:.2f} N of drag its rotors carry {lift:.2f} N of its {weight:.2f} N"
     return ""
+
+
+def left_in_gust(scenario: Scenario, mass: float, w20: float, gust: float) -> float:
+    """Force upwards, N, that is left of all its thrust to a UAV that keeps its place in a gust, beyond its weight and drag.
+
+    The gust blows along the wind and down at once, by `gust` standard deviations of each, and lasts. What the rotors give depends on
+    the air through them by (I.2): a UAV that leans into the wind has it blow down through its rotors.
+
+    Args:
+        scenario: its UAV, rotors and the height of its catch.
+        mass: kg, of all that flies.
+        w20: mean wind at 20 ft, m/s.
+        gust: 1.
+
+    Returns:
+        Minus its weight where no lean holds the drag.
+    """
+    own, drag, (_, static) = rotors_of(scenario), scenario.uav.drag_nspm, lift_range(scenario)
+    thrust = min(scenario.onboard.hover.thrust_max_n, scenario.control.thrust.ceiling * static)
+    weight = -mass * scenario.environment.gravity_mps2[2]
+    air = expected(scenario.replaced({"forecast": {"wind_mps": w20}}))
+    along, down, one = air.gust(gust), gust * air.sinking, thrust / own.number
+    for lean in LEANS:
+        c, s = np.cos(lean), np.sin(lean)
+        gain = 1.0
+        if scenario.rotors.inflow:
+            gain = factor_at_speed(
+                one, abs(along * c - down * s), along * s + down * c, own.disc, own.slope, own.advance
+            )
+        if gain * thrust * s >= drag * along:
+            return float(gain * thrust * c - weight - drag * down)
+    return -weight
+
+
+def holds_height_in(scenario: Scenario, mass: float, gust: float) -> float:
+    """Strongest W₂₀, m/s, in which the UAV holds its height through gusts of `gust` standard deviations; as `left_in_gust`."""
+    low, high = 0.0, STRONGEST_MPS
+    for _ in range(SEARCHES):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if left_in_gust(scenario, mass, middle, gust) >= 0.0 else (low, middle)
+    return low
+
+
+def told_gusts(scenario: Scenario, mass: float) -> str:
+    """A sentence on a wind whose gusts take the UAV down with all its thrust; empty where those of two standard deviations do not."""
+    w20, often, seldom = scenario.foretold_mps, *(holds_height_in(scenario, mass, k) for k in (1.0, 2.0))
+    if w20 <= seldom:
+        return ""
+    return (
+        f"in {w20:g} m/s at 20 ft gusts take this UAV down with all its thrust: it holds its height in those of two deviations "
+        f"up to {seldom:.1f} m/s, of one up to {often:.1f} m/s"
+    )
