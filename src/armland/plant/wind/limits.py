@@ -156,6 +156,6 @@ def told_gusts(scenario: Scenario, mass: float) -> str:
     if w20 <= seldom:
         return ""
     return (
-        f"in {w20:g} m/s at 20 ft gusts take this UAV down with all its thrust: it holds its height in those of two deviations "
-        f"up to {seldom:.1f} m/s, of one up to {often:.1f} m/s"
+        f"in {w20:g} m/s at 20 ft gusts take this UAV down with all its thrust: it holds its height in those of two standard "
+        f"deviations up to {seldom:.1f} m/s, of one up to {often:.1f} m/s"
     )
