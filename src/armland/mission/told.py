@@ -181,7 +181,7 @@ def _decide(p: Records, t: Telling) -> None:
     watch["hinge_max"], watch["tilt_max"] = limits.hinge_force_share * s.magnet.rating_n, np.deg2rad(limits.tilt_deg)
     _, static = lift_range(s)
     # One that flies on with all its thrust need not hover.
-    air = expected(s).sinking
+    air = GUST * expected(s).sinking
     watch["sinks"], watch["plunges"] = SINKS_MPS + air, PLUNGES_MPS + air
     watch["thrust_max"] = s.control.thrust.ceiling * static
     watch["hover_max"] = np.inf if s.place.fly_on else hover_max(s, expected(s).mean > 0.0)
