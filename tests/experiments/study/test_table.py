@@ -3,7 +3,9 @@
 import pytest
 
 from armland.errors import ConfigurationError
+from armland.experiments.study.sensors import SENSORS
 from armland.experiments.study.table import chosen, describe
+from armland.experiments.study.terms import TERMS
 
 
 def test_variants_are_the_scenario_as_it_is_and_each_change(made):
@@ -21,6 +23,11 @@ def test_changes_are_chosen_by_name_in_the_order_asked_for(made):
     study = made({"one": {}, "two": {}, "three": {}})
     assert [c.name for c in chosen(study, "three, one,three").changes] == ["three", "one"]
     assert chosen(study, None) is study
+
+
+@pytest.mark.parametrize("study", [SENSORS, TERMS], ids=["sensors", "terms"])
+def test_every_change_can_be_chosen_by_its_name(study):
+    assert [chosen(study, change.name).changes for change in study.changes] == [(change,) for change in study.changes]
 
 
 @pytest.mark.parametrize(("names", "words"), [("four", "'four' is none; made has: one"), (" , ", "it names nothing")])

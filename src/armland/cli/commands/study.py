@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 EPILOG = """**Examples**
 
-`armland study terms` flies 40 landings with and 40 without each term of the control, in wind and at sea, with the same seeds (an hour).
+`armland study terms` flies 40 landings with and without each term of the control, with the same seeds (some ten minutes).
 
 `armland study sensors` exchanges one piece of hardware at a time, and says what to buy first.
 

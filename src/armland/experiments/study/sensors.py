@@ -46,7 +46,7 @@ SENSORS = Study(
         Change("camera 120 Hz", CAMERA, "images a second", {"camera.rate_hz": 120}),
         Change("camera late", CAMERA, "100 to 150 ms from exposure to arrival", {"camera.delay_ms": [100.0, 150.0]}),
         Change("camera prompt", CAMERA, "10 to 15 ms from exposure to arrival", {"camera.delay_ms": [10.0, 15.0]}),
-        Change("120 Hz, prompt", CAMERA, "both", {"camera.rate_hz": 120, "camera.delay_ms": [10.0, 15.0]}),
+        Change("120 Hz and prompt", CAMERA, "both", {"camera.rate_hz": 120, "camera.delay_ms": [10.0, 15.0]}),
         Change("no accelerometer", UAV, "the UAV does not send it", {"estimation.plate.accelerometer": False}),
         Change("rotors +20 %", UAV, "largest thrust", _thrust(1.2)),
         Change("half a magnet", MAGNET, "half of the pull", {"magnet.rating_n": 88.5}),
