@@ -19,7 +19,7 @@ def outcome(job, task):
     fails = fails or (task.seed % 3 == 0 and bool(task.values.get("bad")))
     result = {"seed": task.seed, "success": not fails, "reason": "made up", "state": "standing"}
     result |= {"retries": task.values.get("misses", 1) + task.seed % 2}
-    return Row(*task, success=not fails, outcome="done", result=result)
+    return Row(*task, success=not fails, outcome="done", result=result, digest=f"{task.seed} {task.values}")
 
 
 @pytest.fixture

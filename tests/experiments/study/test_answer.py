@@ -47,6 +47,11 @@ def test_missed_captures_are_compared_by_seed(made, found):
     assert gains["good"].misses.value == 0.0
 
 
+def test_flights_that_are_the_same_bit_for_bit_are_counted(made, found):
+    gains = {g.name: g for g in found(made(CHANGES), 12).gains}
+    assert (gains["nothing"].same, gains["good"].same) == (12, 0)
+
+
 def test_changes_that_were_not_flown_and_rows_of_others_are_left_out(made, found):
     study = made(CHANGES)
     answer = found(study, 8)

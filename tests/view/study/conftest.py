@@ -11,14 +11,14 @@ from armland.experiments.study.table import Change, Study
 
 @pytest.fixture
 def findings():
-    """Of name -> (group, gain, half width, raised chance, more misses)."""
+    """Of name -> (group, gain, half width, raised chance, more misses, flights that are the same)."""
 
     def make(told, removes=False, least=0.15):
-        def gain(name, group, value, half, raised, misses):
+        def gain(name, group, value, half, raised, misses, same=0):
             rate = Difference("success", value, value - half, value + half, 40)
             more = Difference("misses", misses, misses - 0.1, misses + 0.1, 40)
             only = (2, 2 + round(40 * value)) if value >= 0 else (2 - round(40 * value), 2)
-            return Gain(name, group, name, 40, 30, Interval(0.6, 0.86), rate, *only, raised / 2, raised, more)
+            return Gain(name, group, name, 40, 30, Interval(0.6, 0.86), rate, *only, raised / 2, raised, more, same)
 
         gains = tuple(gain(name, *rest) for name, rest in told.items())
         changes = tuple(Change(g.name, g.group, g.means, {}) for g in gains)

@@ -31,6 +31,12 @@ def test_terms_earn_their_place_or_do_harm(findings):
     assert lines[:2] == ["Earn their place: fast camera (+25 %).", "Do harm here: late camera (-40 %)."]
 
 
+def test_what_never_comes_into_play_is_said(findings):
+    assert "spare: 40 of 40 flights are the same with and without, bit for bit." in sentences(
+        findings({"spare": ("mission", 0.0, 0.1, 1.0, 0.0, 40), "other": ("mission", 0.0, 0.1, 1.0, 0.0, 19)})
+    )
+
+
 def test_too_few_flights_are_said_to_tell_nothing(findings):
     assert sentences(findings(TOLD, least=None))[-1].startswith("So few flights tell no difference")
 

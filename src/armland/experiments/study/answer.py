@@ -48,6 +48,8 @@ class Gain(NamedTuple):
     """The same, raised for the number of changes."""
     misses: Difference
     """Missed captures of a flight, mean, of the same pair."""
+    same: int
+    """Seeds with which the flight is the same bit for bit: what is changed never came into play."""
 
     @property
     def told(self) -> bool:
@@ -82,11 +84,12 @@ def answer(study: Study, report: Report, store: Store) -> Findings:
         store: its rows.
     """
     changes = {change.name: change for change in study.changes}
-    points, missed = {p.point: p for p in report.points}, _missed(store)
+    points = {p.point: p for p in report.points}
+    flown = _flown(store)
     pairings = [p for p in report.pairings if points[p.second].name in changes]
     raised = false_discovery_control([p.chance for p in pairings]) if pairings else []
     gains = [
-        _gain(changes[points[p.second].name], points[p.second], p, float(up), _more(missed, p), study.removes)
+        _gain(changes[points[p.second].name], points[p.second], p, float(up), flown, study.removes)
         for p, up in zip(pairings, raised, strict=True)
     ]
     gains.sort(key=lambda g: (-g.rate.value, g.misses.value))
@@ -111,7 +114,8 @@ def mean_difference(name: str, first: Array, second: Array) -> Difference:
     return Difference(name, float(apart.mean()), float(interval.low), float(interval.high), len(apart))
 
 
-def _gain(change: Change, point: PointReport, p: Pairing, raised: float, misses: Difference, removes: bool) -> Gain:
+def _gain(change: Change, point: PointReport, p: Pairing, raised: float, flown: "_Flown", removes: bool) -> Gain:
+    misses, same = _beside(flown, p)
     rate = _turned(p.rate) if removes else p.rate
     more = _turned(misses) if removes else misses
     return Gain(
@@ -127,6 +131,7 @@ def _gain(change: Change, point: PointReport, p: Pairing, raised: float, misses:
         p.chance,
         raised,
         more,
+        same,
     )
 
 
@@ -134,18 +139,24 @@ def _turned(d: Difference) -> Difference:
     return d._replace(value=-d.value, low=-d.high, high=-d.low)
 
 
-def _missed(store: Store) -> dict[int, dict[int, float]]:
-    # Missed captures by point and seed, of what flew.
-    found: dict[int, dict[int, float]] = {}
+_Flown = dict[int, dict[int, tuple[float, str]]]
+
+
+def _flown(store: Store) -> _Flown:
+    # Missed captures, and what the ticks are known by, by point and seed.
+    found: _Flown = {}
     for row in store.rows():
         if row.result is not None:
-            found.setdefault(row.point, {})[row.seed] = float(row.result.get("retries", 0))
+            found.setdefault(row.point, {})[row.seed] = float(row.result.get("retries", 0)), row.digest
     return found
 
 
-def _more(missed: dict[int, dict[int, float]], p: Pairing) -> Difference:
-    first, second = missed.get(p.first, {}), missed.get(p.second, {})
+def _beside(flown: _Flown, p: Pairing) -> tuple[Difference, int]:
+    # What is told beside success: the difference of missed captures, and how many flights are the same.
+    first, second = flown.get(p.first, {}), flown.get(p.second, {})
     seeds = sorted(first.keys() & second.keys())
     if not seeds:
-        return Difference("misses", np.nan, np.nan, np.nan, 0)
-    return mean_difference("misses", np.array([first[s] for s in seeds]), np.array([second[s] for s in seeds]))
+        return Difference("misses", np.nan, np.nan, np.nan, 0), 0
+    same = sum(first[s][1] == second[s][1] != "" for s in seeds)
+    missed = (np.array([point[s][0] for s in seeds]) for point in (first, second))
+    return mean_difference("misses", *missed), same

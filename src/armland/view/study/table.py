@@ -73,6 +73,9 @@ def sentences(found: Findings) -> list[str]:
         told = [f"fewer with {', '.join(better)}"] if better else []
         told += [f"more with {', '.join(worse)}"] if worse else []
         lines.append(f"Of these, captures are missed {'; '.join(told)} (95 % intervals, each by itself).")
+    for g in found.gains:
+        if 2 * g.same >= g.rate.pairs > 0:
+            lines.append(f"{g.name}: {g.same} of {g.rate.pairs} flights are the same with and without, bit for bit.")
     if found.least is None:
         lines.append("So few flights tell no difference apart from chance; --runs makes them more.")
     else:
