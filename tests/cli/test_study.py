@@ -8,7 +8,7 @@ import pytest
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["motors"], "Invalid value for '{sensors|terms}'"),
+        (["motors"], "is not one of 'sensors', 'terms'"),
         (["terms", "--only", "luck"], "'luck' is none; terms has: deck feed-forward, kept pose"),
         (["terms", "--sea", "9"], "sea states are 0"),
         (["terms", "--runs", "0"], "Invalid value for '--runs'"),

@@ -37,6 +37,7 @@ def test_what_a_term_gives_is_what_is_lost_without_it(made, found):
     assert gains["bad"].rate.value == 0.25
     assert gains["bad"].rate.low > 0.0
     assert gains["good"].rate.value == -0.25
+    assert f"{gains['nothing'].rate.value:+.0f}" == "+0"
     # One miss fewer without: the term costs one.
     assert (gains["sure"].misses.value, gains["sure"].misses.low) == (1.0, 1.0)
 

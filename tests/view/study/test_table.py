@@ -47,6 +47,6 @@ def test_table_counts_seeds_of_a_term_on_the_side_that_has_it(findings, capsys, 
         print_study(findings(told, removes), "calm air", tmp_path)
         first, second = [line for line in capsys.readouterr().out.splitlines() if "fast camera" in line and "│" in line]
         cells = [cell.strip() for cell in first.split("│") if cell.strip()]
-        assert cells == ["fast camera", "30/40", "+25 (+15 to +35)", counts, "0.0005", "yes"]
+        assert cells == ["fast camera", "30/40", "+25 (+15 to +35)", counts, "0.0005"]
         assert "-0.50" in second
         assert "-0.60 to -0.40" in second

@@ -37,7 +37,9 @@ WIND_MPS, SEA, HULL_M, RUNS = 8.0, "3", 4.0, 40
 
 @options.taken(
     EPILOG,
-    which=options.argument(Literal["sensors", "terms"], "What is asked: hardware, or terms of the control.", ...),
+    which=options.argument(
+        Literal["sensors", "terms"], "sensors: which hardware helps; terms: those of the control.", ..., metavar="WHICH"
+    ),
     scenario=options.scenario("landing"),
     runs=options.option(int | None, f"Flights of each change; {RUNS} if absent.", min=1, max=100_000),
     seed=options.option(int, "Seed of the first flight, the same for each change.", default=1, min=0),

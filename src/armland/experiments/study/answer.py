@@ -136,7 +136,8 @@ def _gain(change: Change, point: PointReport, p: Pairing, raised: float, flown: 
 
 
 def _turned(d: Difference) -> Difference:
-    return d._replace(value=-d.value, low=-d.high, high=-d.low)
+    # From zero, so that nothing is no less than nothing.
+    return d._replace(value=0.0 - d.value, low=0.0 - d.high, high=0.0 - d.low)
 
 
 _Flown = dict[int, dict[int, tuple[float, str]]]

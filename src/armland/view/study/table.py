@@ -10,7 +10,7 @@ from armland.experiments.study.answer import Findings, Gain
 from armland.view.campaign.terminal import percent
 from armland.view.tables.verdicts import terminal, titled
 
-COLUMNS = ("", "success", "gives [%]", "with : without", "McNemar", "told")
+COLUMNS = ("", "success", "gives [%]", "with : without", "McNemar")
 MANY = 500
 """Flights from which on per cents have a decimal."""
 
@@ -25,9 +25,9 @@ def print_study(found: Findings, conditions: str, out: Path) -> None:
     """
     console, u = terminal(), found.usual
     console.print(Text(f"{found.study.title}: {conditions}", style="bold"))
-    table = titled("Success; seeds with which only the one or the other succeeds", *COLUMNS, left=(0,))
-    missed = titled("Missed captures of a flight, and what is given of them", "", "more", "95 %", left=(0,))
-    table.add_row(Text(found.study.usual, no_wrap=True), f"{u.successes}/{u.flights}", *[""] * 4)
+    table = titled("Success, and seeds with which only the one or the other succeeds", *COLUMNS, left=(0,))
+    missed = titled("Missed captures of a flight, by what is given", "", "more", "95 %", left=(0,))
+    table.add_row(Text(found.study.usual, no_wrap=True), f"{u.successes}/{u.flights}", *[""] * 3)
     for g in found.gains:
         name = Text(g.name, no_wrap=True)
         table.add_row(name, *_cells(g, found.study.removes))
@@ -39,13 +39,13 @@ def print_study(found: Findings, conditions: str, out: Path) -> None:
     console.print(Text(f"The data is in {out}/"))
 
 
-def _cells(g: Gain, removes: bool) -> list[str]:
+def _cells(g: Gain, removes: bool) -> list[Text]:
     # Of a term that is taken away the scenario as it is has it.
     only = (g.only_usual, g.only_changed) if removes else (g.only_changed, g.only_usual)
     digits = int(g.rate.pairs >= MANY)
     value, low, high = (f"{100.0 * x:+.{digits}f}" for x in (g.rate.value, g.rate.low, g.rate.high))
     counts = f"{g.successes}/{g.flights}", f"{value} ({low} to {high})", f"{only[0]} : {only[1]}"
-    return [*counts, f"{g.chance:.2g}", "yes" if g.told else "no"]
+    return [Text(cell, no_wrap=True) for cell in (*counts, f"{g.chance:.2g}")]
 
 
 def _misses(d: Difference) -> tuple[str, str]:
