@@ -8,7 +8,7 @@ import pytest
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["motors"], "is not one of 'sensors', 'terms'"),
+        (["motors"], "'motors' is not one of"),
         (["terms", "--only", "luck"], "'luck' is none; terms has: deck feed-forward, kept pose"),
         (["terms", "--sea", "9"], "sea states are 0"),
         (["terms", "--runs", "0"], "Invalid value for '--runs'"),
