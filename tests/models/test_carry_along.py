@@ -57,6 +57,18 @@ def test_x5_torques_on_a_moving_base_agree_with_pinocchio(bench, arm_name, state
         arm.views.gravity[:] = kept
 
 
+def test_an_arm_that_is_not_told_feels_gravity_alone(bench):
+    arm, e = bench("lwr4", True).arm, moving(np.random.default_rng(1))
+    kept = arm.views.gravity.copy()
+    try:
+        feel(arm.views, e[0], False)
+        np.testing.assert_array_equal(arm.views.gravity, e["gravity"][0])
+        feel(arm.views, e[0])
+        np.testing.assert_allclose(arm.views.gravity, e["gravity"][0] - e["base_a"][0])
+    finally:
+        arm.views.gravity[:] = kept
+
+
 def test_on_land_nothing_is_added(bench, states):
     arm = bench("lwr4", tool=True).arm
     for q, qd in states(arm, 5):

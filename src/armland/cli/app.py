@@ -19,6 +19,7 @@ from armland.cli.commands.paper import paper
 from armland.cli.commands.reach import reach
 from armland.cli.commands.run import land, run, takeoff
 from armland.cli.commands.studies import envelope, takeoff_weight, verify
+from armland.cli.commands.study import study
 from armland.cli.commands.uav import uav
 from armland.cli.commands.watch import console, replay
 
@@ -79,6 +80,7 @@ for command in (
     verify,
     gains,
     compare,
+    study,
     envelope,
     margins,
     takeoff_weight,

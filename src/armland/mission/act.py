@@ -108,7 +108,7 @@ def act(b: Record, path: Array) -> None:
     torque_arm(row.arm, acceleration, b)
     if b.environment.moves:
         uav = b.told.act.uav
-        ride(uav.station, uav.rides, uav.lags, uav.tick_s, b.environment, s.ride)
+        ride(uav.station, uav.rides, uav.lags, uav.ahead, uav.tick_s, b.environment, s.ride)
     command_uav(row, b.kept.estimate.filter.align.quat, b)
     s.magnet = c.magnet
     b.kept.estimate.thrust_log[m.tick % RING] = s.thrust

@@ -54,7 +54,7 @@ def refresh_arm(b: Record, path: Array, arm: Views) -> None:
     m = b.tick.measurement
     for i in range(m.q.shape[0]):
         arm.qpos[i], arm.qvel[i] = m.q[i], m.qd[i]
-    feel(arm, b.environment)
+    feel(arm, b.environment, b.told.estimate.carried == 1)
     refresh(arm, b.arm, b.told.estimate.velocity_terms == 1)
     if b.told.estimate.coriolis:
         twist, mu = np.zeros(6), np.zeros(6)
@@ -63,7 +63,7 @@ def refresh_arm(b: Record, path: Array, arm: Views) -> None:
         coriolis_wrench(arm, b.arm, twist, mu)
         for i in range(6):
             b.kept.estimate.mu[i] = mu[i]
-    if b.environment.moves:
+    if b.environment.moves and b.told.estimate.carried:
         carry_along(arm, b.environment, b.arm)
 
 

@@ -45,6 +45,7 @@ def told_layout(joints: int) -> np.dtype:
             ("gravity", "f8", (3,)),  # m/s² [W]
             ("fused", "i8"),  # 1: plate and attitude by the pose filter; 0: attitude as received, plate on the arm
             ("velocity_terms", "i8"),  # 1: the arm model evaluates C φ̇ and 𝒥̇ φ̇
+            ("carried", "i8"),  # 1: it is told that its base moves
             ("coriolis", "i8"),  # 1: μ ẋ_d is fed forward
             ("joint_leap", "f8"),  # rad, from one sample to the next that no joint can move
             ("attitude_leap", "f8"),  # rad, beyond what its rates explain that no UAV turns

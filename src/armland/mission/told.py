@@ -64,9 +64,6 @@ FELT = 2.0
 FLEES_SHARE = 0.75
 """Of the height at which the arm waits below the plate, how far it draws away from a plate that it has missed."""
 
-RIDES_RAD_S = 8.0
-"""Of the deck's motion with which a UAV goes along: a hull's is slower, and faster is what no attitude of a UAV follows."""
-
 BALANCE_AGE_S = 0.05
 """Oldest attitude that can be balanced by."""
 
@@ -138,7 +135,7 @@ def _estimate(p: Records, t: Telling) -> None:
     s, hinged = t.scenario, t.hinged
     p["gravity"] = s.environment.gravity_mps2
     p["tick_s"], p["fused"], p["coriolis"] = t.tick_s, not hinged, hinged and s.control.coriolis_feedforward
-    p["velocity_terms"] = t.switches.acceleration == "implied"
+    p["velocity_terms"], p["carried"] = t.switches.acceleration == "implied", s.control.deck_feedforward
     p["joint_leap"] = np.inf if hinged else JOINT_LEAP_RAD_S * t.tick_s
     p["attitude_leap"] = np.inf if hinged else ATTITUDE_LEAP_RAD
     p["mass"], p["weight"] = t.flyer.mass, t.flyer.weight
@@ -217,7 +214,7 @@ def _refer(p: Records, t: Telling) -> None:
 
 
 def _uav(p: Records, t: Telling) -> None:
-    tell_station(p, t.scenario, t.flyer, _station(t), RIDES_RAD_S)
+    tell_station(p, t.scenario, t.flyer, _station(t))
     p["sight"]["above"] *= t.start == "air"
     if t.launch is not None:
         p["launch"] = t.launch.velocity
@@ -225,7 +222,7 @@ def _uav(p: Records, t: Telling) -> None:
             p["fly_on"], p["thrust_max"] = 1, lift_range(t.scenario)[1]
 
 
-def tell_station(p: Records, s: Scenario, flyer: Flyer, station: Array, rides: float) -> None:
+def tell_station(p: Records, s: Scenario, flyer: Flyer, station: Array) -> None:
     """Fill `p` (1,) of `uav.told_layout`: what commanding a UAV is told, whoever lands it.
 
     Args:
@@ -233,7 +230,6 @@ def tell_station(p: Records, s: Scenario, flyer: Flyer, station: Array, rides: f
         s: believed scenario.
         flyer: what flies.
         station: (3,), m, D, of the pivot.
-        rides: rad/s, fastest motion of the deck with which it goes along.
     """
     c, k, thrust = s.control, s.control.station, s.control.thrust
     p["tick_s"], p["mass"], p["weight"], p["gravity"] = 1.0 / s.run.rate_hz, flyer.mass, flyer.weight, flyer.gravity
@@ -251,10 +247,11 @@ def tell_station(p: Records, s: Scenario, flyer: Flyer, station: Array, rides: f
     p["k_position"], p["k_velocity"], p["k_integral"] = k.k_position, k.k_velocity, k.k_integral
     p["speed_max"], p["integral_max"] = k.speed_max_mps, k.integral_max_mps2
     wind, drag = expected(s), s.uav.drag_nspm / flyer.mass
-    p["reckoned"], p["fades"] = (FELT_S, FELT_S) if wind.mean > 0.0 else (RECKONED_S, SEEN_S)
+    feels = wind.mean > 0.0 and s.estimation.plate.accelerometer
+    p["reckoned"], p["fades"] = (FELT_S, FELT_S) if feels else (RECKONED_S, SEEN_S)
     p["astray"] = ASTRAY_M if wind.mean > 0.0 else np.inf
     p["leant"] = max(LEANT_MPS2, drag * wind.gust(STRONGEST))
-    p["rides"], p["coming_max"], p["vertical"] = rides, COMING_MPS2, k.vertical
+    p["rides"], p["ahead"], p["coming_max"], p["vertical"] = k.rides_rad_s, k.ahead, COMING_MPS2, k.vertical
     # An attitude under kp and kd is late by kd/kp, whatever it turns; thrust by the rotors' lag.
     uplink, o = 1e-3 * s.link.uplink_delay_ms, s.onboard
     p["lags"] = uplink + np.array([o.kd_nms[0] / o.kp_nm[0], o.kd_nms[1] / o.kp_nm[1], s.rotors.time_constant_s])

@@ -169,7 +169,7 @@ def to_own(align: Array, stands: bool, p: Record, environment: Record, ride: Rec
     frame, in which it holds its attitude; `align` (4,) is δ, `p`, `environment` and `ride` are those of the board.
     """
     if environment.moves:
-        level = deck_ahead(p.lags[0], environment, ride) if stands else environment.base_quat.copy()
+        level = deck_ahead(p.ahead * p.lags[0], environment, ride) if stands else environment.base_quat.copy()
         return multiply(level, conjugate(align))
     return conjugate(align)
 

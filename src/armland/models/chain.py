@@ -106,10 +106,10 @@ class Views(NamedTuple):
 
 
 @njit(cache=True)
-def feel(views: Views, environment: Record) -> None:
-    """Give the arm the gravity that its base feels, (3,) m/s²: that of `environment` less the base's acceleration."""
+def feel(views: Views, environment: Record, carried: bool = True) -> None:
+    """Give the arm the gravity that its base feels, (3,) m/s²: that of `environment` less the base's acceleration, where `carried`."""
     for i in range(3):
-        views.gravity[i] = environment.gravity[i] - environment.base_a[i]
+        views.gravity[i] = environment.gravity[i] - (environment.base_a[i] if carried else 0.0)
 
 
 @njit(cache=True)

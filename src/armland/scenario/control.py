@@ -23,6 +23,11 @@ class Station(Section):
     gust_share: of.Fraction = key(1.0, "share of the disturbance in the plate filter that is cancelled, horizontally")
     gust_max_mps2: of.PositiveAcceleration = key(2.0, "largest disturbance that is cancelled")
     hover_s: of.PositiveSeconds = key(1.0, "time constant with which the hover thrust follows the station keeping")
+    rides_rad_s: of.PositiveBandwidth = key(
+        8.0,
+        "of a deck's motion with which the UAV goes along, at most: a hull's is slower, and what is faster no attitude follows",
+    )
+    ahead: of.Fraction = key(1.0, "share of its lateness by which it is asked beforehand for what such a deck will do")
 
 
 class Approach(Section):
@@ -85,6 +90,7 @@ class Control(Section):
     range_margin_rad: of.Fraction = key(0.25, "distance to a joint's end at which the null space pushes back")
     range_stiffness_nm: of.Coefficient = key(20.0, "N·m per rad of that push")
     coriolis_feedforward: bool = key(False, "feed μ ẋ_d forward; the paper neglects it")
+    deck_feedforward: bool = key(True, "feed the torques forward that the motion of the arm's base asks for, at sea")
     station: Station = key(Station(), "station keeping by the ground")
     approach: Approach = key(Approach(), "how the free arm follows the plate")
     thrust: Thrust = key(Thrust(), "thrust while the arm holds the UAV")

@@ -22,6 +22,7 @@ class PlateFilter(Section):
     restart_after: Annotated[int, Field(ge=1, le=1000)] = key(
         4, "number of gated samples in a row after which it begins anew"
     )
+    accelerometer: bool = key(True, "whether the UAV's accelerometers are asked, where wind is foretold")
     hold_s: of.Seconds = key(0.05, "how long a rate may carry an attitude on")
     age_max_s: of.Seconds = key(0.25, "oldest sample and oldest attitude of a valid estimate")
     sigma_position_max_m: of.Sigma = key(0.01, "per axis; above it the estimate is not valid")

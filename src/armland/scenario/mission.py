@@ -19,6 +19,9 @@ class Place(Section):
         None, "joint positions near the catch; searched for if absent"
     )
     wait_below_m: of.Length = key(0.24, "how far below the catch the arm waits")
+    waits_above_m: of.Distance = key(
+        0.4, "how far above the catch the UAV waits in wind, out of reach of the arm below should it sink"
+    )
     standoff_m: of.Length = key(0.03, "gap from which the arm closes")
     above_m: of.Length = key(0.05, "height above the rails at which the descent begins")
     search_m: of.Length = key(0.015, "how far above and below its believed place the cradle is felt for")
@@ -51,6 +54,9 @@ class Bounds(Section):
     uav_speed_mps: of.PositiveSpeed = key(0.15, "speed of the UAV at which the arm approaches")
     flown_error_m: of.Length = key(0.06, "distance to its station at which a UAV that was let go has taken off")
     flown_speed_mps: of.PositiveSpeed = key(0.15, "its speed there")
+    spare_least: of.Fraction = key(
+        0.4, "thrust to spare before the arm comes in wind, over that where nothing blows; 0: it does not wait for it"
+    )
     align_offset_m: of.Length = key(0.004, "horizontal offset at which the arm closes")
     align_speed_mps: of.PositiveSpeed = key(0.06, "relative speed at which the arm closes")
     align_tilt_deg: of.Tilt = key(10.0, "tilt of the UAV at which the arm closes")

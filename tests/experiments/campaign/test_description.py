@@ -45,6 +45,49 @@ def test_points_are_all_combinations_with_what_is_fixed(tmp_path):
     assert {p["uav.extra_mass_kg"] for p in found.grid} == {0.01}
 
 
+VARIANTS = """
+[parameters]
+uav.extra_mass_kg = {uniform = [0.0, 0.02]}
+
+[[variants]]
+name = "z as it is"
+
+[[variants]]
+name = "a fast camera"
+values.camera.rate_hz = 60
+
+[[variants]]
+name = "hard wind"
+values.air.wind_mps = 9.0
+values.air.turbulence = "by_wind"
+"""
+
+
+def test_variants_set_what_they_name_and_nothing_of_each_other(tmp_path):
+    found = written(tmp_path, VARIANTS)
+    assert found.named == ["z as it is", "a fast camera", "hard wind"]
+    assert found.grid == [{}, {"camera.rate_hz": 60}, {"air.wind_mps": 9.0, "air.turbulence": "by_wind"}]
+    # What is loaded is the scenario as it is: what the first sets is no other one's.
+    assert found.settings() == {"uav": {"extra_mass_kg": 0.01}}
+    check_parameters(found, load_scenario("landing", found.settings()))
+    bad = written(tmp_path, VARIANTS.replace("= 60", "= 0"))
+    with pytest.raises(ConfigurationError, match=r"variants\]\]: 1 problem\n.*camera.rate_hz"):
+        check_parameters(bad, load_scenario("landing", found.settings()))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('[[variants]]\nname = "a"\n[[variants]]\nname = "a"', "'a' is there twice"),
+        ('[[variants]]\nname = "a"\n[[points]]\nair.wind_mps = 1.0', "points and variants: one of them"),
+        (VARIANTS + "values.uav.extra_mass_kg = 0.01", "'hard wind' sets uav.extra_mass_kg, which a parameter sets"),
+    ],
+)
+def test_variants_that_contradict_are_refused(tmp_path, text, words):
+    with pytest.raises(ConfigurationError, match=words):
+        written(tmp_path, text)
+
+
 def test_scenario_beside_the_file_is_found_from_anywhere(tmp_path):
     (tmp_path / "calm.toml").write_text('base = "landing"\n')
     assert written(tmp_path, 'scenario = "calm.toml"').scenario == str(tmp_path / "calm.toml")

@@ -11,7 +11,7 @@ from armland.models.environment import on_land
 RATE, TICK_S, STATION = 8.0, 1e-3, np.array([0.6, 0.1, 0.9])
 
 
-def ridden(omega, seconds, bias=0.0, heave=0.1, roll=0.0, late=0.0):
+def ridden(omega, seconds, bias=0.0, heave=0.1, roll=0.0, late=0.0, ahead=1.0):
     """Ride for `seconds` on a deck that heaves by `heave`, m, and rolls by `roll`, rad, at `omega`, rad/s; all of it by tick.
 
     The UAV answers `late`, s.
@@ -24,7 +24,7 @@ def ridden(omega, seconds, bias=0.0, heave=0.1, roll=0.0, late=0.0):
         e["base_quat"], e["gravity"] = R.as_quat(scalar_first=True), R.inv().apply([0.0, 0.0, -9.81])
         e["base_omega"], e["base_alpha"] = [roll * rate, 0.0, 0.0], [roll * push, 0.0, 0.0]
         e["base_v"], e["base_a"] = R.inv().apply([bias, 0.0, heave * rate]), R.inv().apply([0.0, 0.0, heave * push])
-        ride(STATION, RATE, np.full(3, late), TICK_S, e[0], s[0])
+        ride(STATION, RATE, np.full(3, late), ahead, TICK_S, e[0], s[0])
         place = R.apply(STATION) + [0.0, 0.0, heave * swing]
         rows.append(
             np.concatenate(
@@ -46,6 +46,15 @@ def test_k2_follows_the_low_pass_of_the_stations_motion(omega):
     np.testing.assert_allclose(followed[late], expected[late], atol=1.5 * TICK_S * omega * 0.1)
     left = np.ptp(followed[late]) / np.ptp(height[late])
     assert left > 0.95 if omega < RATE else left < 0.5
+
+
+def test_without_prediction_the_acceleration_is_that_of_now():
+    """Negative control: a UAV that answers 0.2 s late is asked for what the deck will do then, and that is not what it does now."""
+    now, ahead = ridden(2.0, 6.0, late=0.2, ahead=0.0), ridden(2.0, 6.0, late=0.2)
+    # Upwards, on a deck that only heaves, what is led is ā less the change of what is apparent.
+    np.testing.assert_allclose(now[:, 18:21], now[:, 12:15], atol=1e-12)
+    assert np.abs(ahead[:, 18:21] - ahead[:, 12:15]).max() > 0.05
+    np.testing.assert_array_equal(now[:, :15], ahead[:, :15])
 
 
 def test_biased_velocity_moves_nothing():
@@ -100,7 +109,7 @@ def levels(omega, late, roll=0.05, seconds=20.0):
         e["base_quat"], e["gravity"] = R.as_quat(scalar_first=True), R.inv().apply([0.0, 0.0, -9.81])
         e["base_omega"], e["base_alpha"] = [rate, 0.0, 0.0], [push, 0.0, 0.0]
         e["base_v"], e["base_a"] = 0.0, 0.0
-        ride(STATION, RATE, np.full(3, late), TICK_S, e[0], s[0])
+        ride(STATION, RATE, np.full(3, late), 1.0, TICK_S, e[0], s[0])
         level = Rotation.from_quat(deck_ahead(late, e[0], s[0]), scalar_first=True).as_rotvec()
         rows.append([angle, level[0]])
     return np.array(rows)

@@ -13,7 +13,6 @@ from armland.mission.reference.view import (
     PASSES_M,
     RISE_MPS,
     RISEN_S,
-    WAITS_ABOVE_M,
     in_view,
     seek,
     told,
@@ -135,13 +134,13 @@ def test_uav_waits_above_its_station_in_wind_and_comes_down_at_its_pace(below):
     station, uav = np.array(below.plan.scenario.place.catch_m), below.told["act"]["uav"]
     sight, samples = uav["sight"], 1.0 / (uav["period"][0] * uav["tick_s"][0])
     assert asked(below, (0.0, 0.0))[2] == station[2]
-    sight["leans"], sight["above"], sight["level"] = 1, WAITS_ABOVE_M, 1.0
+    sight["leans"], sight["above"], sight["level"] = 1, 0.4, 1.0
     for _ in range(round(samples)):
         before = asked(below, (0.0, 0.0))[2]
     assert before == pytest.approx(station[2] + LOWERS_MPS)
     for _ in range(round(2.0 * samples)):
         waiting = asked(below, (0.0, 0.0))[2]
-    assert waiting == pytest.approx(station[2] + WAITS_ABOVE_M)
+    assert waiting == pytest.approx(station[2] + 0.4)
     assert below.kept["act"]["asked"][0, 2] == waiting
     assert waiting - asked(below, (0.0, 0.0), waits=False)[2] == pytest.approx(LOWERS_MPS / samples)
     for _ in range(round(2.0 * samples)):

@@ -14,6 +14,7 @@ from armland.cli.exits import EXPLAINED, attempted, say
 from armland.cli.results import Results, Work, publish
 
 if TYPE_CHECKING:
+    from armland.experiments.campaign.answers.table import Table
     from armland.experiments.campaign.crews.threads import Crew
     from armland.experiments.campaign.engine import Campaign
 
@@ -106,7 +107,7 @@ def fly(**given: Any) -> None:
     if file.exists() and not given["resume"]:
         raise ConfigurationError(f"{file} is there already; --resume goes on with it, or name another --out")
     campaign = _campaign(given, file)
-    crew = _crew(given["jobs"], given["ray"])
+    crew = crew_of(given["jobs"], given["ray"])
     planned = len(campaign.schedule)
     with (
         Store(file, write=True) as store,
@@ -153,7 +154,8 @@ def _campaign(given: dict[str, Any], store: Path) -> "Campaign":
     return campaign._replace(bounds=limits)
 
 
-def _crew(jobs: int | None, address: str | None) -> "Crew":
+def crew_of(jobs: int | None, address: str | None) -> "Crew":
+    """Who flies: `jobs` processes, one per core if absent, or those of the Ray cluster at an `address`."""
     if address is not None:
         from armland.experiments.campaign.crews.cluster import cluster
 
@@ -167,7 +169,6 @@ def _report(given: dict[str, Any], file: Path, out: Path) -> None:
     from armland.errors import ConfigurationError
     from armland.experiments.campaign.answers.report import report
     from armland.experiments.campaign.store import Store
-    from armland.view.campaign.files import write_csv, write_parquet
     from armland.view.campaign.page import page
     from armland.view.campaign.terminal import print_report
     from armland.view.campaign.worst import strips
@@ -184,15 +185,22 @@ def _report(given: dict[str, Any], file: Path, out: Path) -> None:
                     drawn = strips(
                         store, made, results.scratch("worst.mcap"), partial(tell, "pictures of the worst flights")
                     )
-        write_csv(results.folder / "rows.csv", table)
-        with attempted("rows.parquet"):
-            write_parquet(results.folder / "rows.parquet", table)
+        keep_rows(results, table)
         if given["figures"]:
             with attempted("report.html"):
                 results.write("report.html", page(made, table, file, drawn))
         return Work(True, made.result(), lambda folder: print_report(made, file, folder))
 
     publish({**given, "out": out, "figures": False}, "report.json", ("report.html", "rows.*"), work)
+
+
+def keep_rows(results: Results, table: "Table") -> None:
+    """Write the rows of a `table` as rows.csv, and rows.parquet where that can be done, into the folder of the results."""
+    from armland.view.campaign.files import write_csv, write_parquet
+
+    write_csv(results.folder / "rows.csv", table)
+    with attempted("rows.parquet"):
+        write_parquet(results.folder / "rows.parquet", table)
 
 
 @options.taken(

@@ -122,6 +122,7 @@ def told(scenario: Scenario, mass: float, lever: Array, gust: float = 0.0) -> Re
     """
     f, tick_s = scenario.estimation.plate, 1.0 / scenario.run.rate_hz
     p: Records = np.zeros(1, told_layout())
+    gust = gust if f.accelerometer else 0.0
     p["tick_s"], p["mass"], p["gust_max"] = tick_s, mass, gust
     p["forgotten"] = FELT_S if gust > 0.0 else FORGOTTEN_S
     p["marker_offset"], p["marker_quat"], p["plate_offset"] = scenario.camera.marker_m, FACE_DOWN, lever

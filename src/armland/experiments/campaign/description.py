@@ -20,6 +20,7 @@ from armland.scenario.refusal import refusal, refused
 from armland.scenario.tables import as_json, update
 
 MOST_POINTS = 10_000
+MOST_VARIANTS = 100
 MOST_TRIED = 200
 """Points that are tried on the scenario before anything flies; a later one that it refuses is a row with its error."""
 Design = Literal["random", "latin", "sobol"]
@@ -45,6 +46,13 @@ class Failure(Section):
         return []
 
 
+class Variant(Section):
+    """A scenario that differs in some values, by its name."""
+
+    name: _Path = Field(description="in tables and figures")
+    values: dict[str, Any] = Field(default_factory=dict, description="what differs, by path in the scenario")
+
+
 class Description(Section):
     """A campaign's file as it is read."""
 
@@ -62,7 +70,10 @@ class Description(Section):
     points: Annotated[tuple[dict[str, Any], ...], Field(max_length=MOST_POINTS)] = key(
         (), "values that change together: each table is a point, flown with the same seeds as the others"
     )
-
+    variants: Annotated[tuple[Variant, ...], Field(max_length=MOST_VARIANTS)] = key(
+        (),
+        "points with names: what one does not set is the scenario's, and follows its rules; the first is compared with",
+    )
     failure: Failure | None = key(None, "the failure whose rate is asked for; the mission's own criteria if absent")
 
     @property
@@ -78,18 +89,34 @@ class Description(Section):
     @property
     def grid(self) -> list[dict[str, Any]]:
         """Fixed values and those of each point, by path: each of `points` with all combinations of what is swept; one at least."""
+        return self._crossed(self.points or tuple(v.values for v in self.variants) or ({},))
+
+    def _crossed(self, points: tuple[dict[str, Any], ...]) -> list[dict[str, Any]]:
         fixed = {name: p.fixed for name, p in self.parameters.items() if p.kind == "fixed"}
         sweeps = [[(name, value) for value in p.sweep or ()] for name, p in self.swept.items()]
-        return [fixed | point | dict(swept) for point in self.points or ({},) for swept in product(*sweeps)]
+        return [fixed | point | dict(swept) for point in points for swept in product(*sweeps)]
+
+    @property
+    def named(self) -> list[str]:
+        """The variant of each point of `grid`; empty where there are none."""
+        each = prod(len(p.sweep or ()) for p in self.swept.values())
+        return [variant.name for variant in self.variants for _ in range(each)]
 
     def _contradictions(self) -> list[str]:
-        count = max(len(self.points), 1) * prod(len(p.sweep or ()) for p in self.swept.values())
+        count = max(len(self.points), len(self.variants), 1) * prod(len(p.sweep or ()) for p in self.swept.values())
         found = [f"there are {count} points; at most {MOST_POINTS}"] if count > MOST_POINTS else []
         for i, point in enumerate(self.points):
             twice = sorted(point.keys() & self.parameters.keys())
             found += [f"points.{i} sets {', '.join(twice)}, which a parameter sets, too"] if twice else []
             if point.keys() != self.points[0].keys():
                 found.append(f"points.{i} must set what points.0 sets: {', '.join(sorted(self.points[0]))}")
+        if self.points and self.variants:
+            found.append("points and variants: one of them; variants may set different values")
+        names = [v.name for v in self.variants]
+        found += [f"variants: {name!r} is there twice" for name in sorted(set(names)) if names.count(name) > 1]
+        for v in self.variants:
+            twice = sorted(v.values.keys() & self.parameters.keys())
+            found += [f"variant {v.name!r} sets {', '.join(twice)}, which a parameter sets, too"] if twice else []
         return found
 
     def settings(self) -> dict[str, Any]:
@@ -109,8 +136,19 @@ class Description(Section):
         return out
 
     def middle(self) -> dict[str, Any]:
-        """Values of the first point, and of all that is drawn its median, by path."""
-        return {**{name: p.quantile()(np.array([0.5]))[0] for name, p in self.drawn.items()}, **self.grid[0]}
+        """Values of the first point, and of all that is drawn its median, by path; nothing of variants, which set different ones."""
+        return {**self._medians(), **self._crossed(self.points or ({},))[0]}
+
+    def _medians(self) -> dict[str, Any]:
+        return {name: p.quantile()(np.array([0.5]))[0] for name, p in self.drawn.items()}
+
+    def tried(self) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+        """What is tried before anything flies: what is said of a refusal, and values, by path."""
+        middle, medians = self.middle(), self._medians()
+        found: list[tuple[dict[str, Any], dict[str, Any]]] = [({}, {**medians, **p}) for p in self.grid[:MOST_TRIED]]
+        for path, parameter in self.drawn.items():
+            found += [({path: x}, {**middle, path: x}) for x in parameter.examples()]
+        return found
 
 
 def read_description(file: Path) -> Description:
@@ -135,6 +173,9 @@ def dotted(data: dict[str, Any]) -> dict[str, Any]:
         out["parameters"] = _paths(out["parameters"], lambda v: not all(isinstance(x, dict) for x in v.values()))
     if isinstance(out.get("points"), list):
         out["points"] = [_paths(p, lambda v: False) if isinstance(p, dict) else p for p in out["points"]]
+    for variant in out["variants"] if isinstance(out.get("variants"), list) else []:
+        if isinstance(variant, dict) and isinstance(variant.get("values"), dict):
+            variant["values"] = _paths(variant["values"], lambda v: False)
     return out
 
 
@@ -201,11 +242,7 @@ def check_parameters(description: Description, scenario: Scenario) -> None:
         ConfigurationError: all of it, with the paths.
     """
     tables, found = json.loads(scenario.model_dump_json()), []
-    middle = description.middle()
-    tried: list[tuple[dict[str, Any], dict[str, Any]]] = [({}, {**middle, **p}) for p in description.grid[:MOST_TRIED]]
-    for path, parameter in description.drawn.items():
-        tried += [({path: x}, {**middle, path: x}) for x in parameter.examples()]
-    for said, values in tried:
+    for said, values in description.tried():
         try:
             if odd := values.keys() & {"run.seed", "title"}:
                 raise ConfigurationError(f"{odd.pop()}: the seed follows from first_seed, and a title flies nothing")
@@ -215,4 +252,4 @@ def check_parameters(description: Description, scenario: Scenario) -> None:
             line = line if not said or next(iter(said)) in line else f"{said}: {line}"
             found += [] if line in found else [line]
     if found:
-        raise refused("[parameters] and [[points]]", found)
+        raise refused("[parameters], [[points]] and [[variants]]", found)

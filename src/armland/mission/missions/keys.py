@@ -31,7 +31,7 @@ GEAR = (
         "limits",
     ),
     *_of("control", "approach station thrust"),
-    *_of("place", "catch_m put_down_m home_deg wait_below_m standoff_m above_m search_m withdraw_m"),
+    *_of("place", "catch_m put_down_m home_deg wait_below_m waits_above_m standoff_m above_m search_m withdraw_m"),
     *_of("place", "start_offset_m start_above_m start_speed_mps start_heading_deg"),
 )
 """Keys of missions with a UAV that flies and a cradle."""

@@ -32,9 +32,6 @@ RUSHES_MPS, DROPS_MPS, RUSHES_S = 0.7, 0.35, 0.02
 """Speed of the plate against the arm that comes to it, and against one that is right below it, at which the arm draws away; joining a
 UAV that comes down takes 0.5 m/s."""
 
-SPARE = 0.4
-"""Thrust that the rotors must have to spare before the arm comes, over what they have where nothing blows."""
-
 TRIMMED_S = 0.05
 """For which a UAV that hovers by itself is listened to, at least."""
 
@@ -217,7 +214,6 @@ LANDING = Mission(
     # By then it has said what it asks of its rotors; a moment later it may be out of view again.
     thresholds=lambda s: {
         "trimmed_s": ALONE_S + TRIMMED_S,
-        "spare_least": SPARE,
         "joined_m": s.place.standoff_m + JOINED_M,
         "touched_m": TOUCHED_M,
         "rushes_mps": RUSHES_MPS,

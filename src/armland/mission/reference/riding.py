@@ -50,8 +50,8 @@ LIKELY_MPS = 0.1
 
 def told_layout() -> list[tuple]:
     """Of what commanding the UAV is told, what going along needs."""
-    # rad/s, at most; s, by which the UAV answers late, along each axis of W
-    return [("rides", "f8"), ("lags", "f8", (3,))]
+    # rad/s, at most; s, by which the UAV answers late, along each axis of W; share of it that is looked ahead
+    return [("rides", "f8"), ("lags", "f8", (3,)), ("ahead", "f8")]
 
 
 def kept_layout() -> np.dtype:
@@ -62,13 +62,16 @@ def kept_layout() -> np.dtype:
 
 
 @njit(cache=True)
-def ride(station: Array, fastest: float, lags: Array, tick_s: float, environment: Record, s: Record) -> None:
+def ride(
+    station: Array, fastest: float, lags: Array, ahead: float, tick_s: float, environment: Record, s: Record
+) -> None:
     """One tick of (K.2) and (K.3).
 
     Args:
         station: r_s (3,), m, D.
         fastest: λ₀, rad/s.
         lags: τ (3,), s, W.
+        ahead: share of τ, a ratio, of which later the acceleration is that is asked for; 1, or 0 without prediction.
         tick_s: s.
         environment: of `models.environment.environment_layout`, of a deck that moves.
         s: of `kept_layout`, updated.
@@ -89,7 +92,7 @@ def ride(station: Array, fastest: float, lags: Array, tick_s: float, environment
     for i in range(3):
         jerk = rate**2 * (3.0 * (along[i] - s.v[i]) - rate * s.apart[i]) - 3.0 * rate * s.a[i]  # (K.2)
         s.a[i] += jerk * tick_s
-        lead[i] = s.a[i] + lags[i] * jerk
+        lead[i] = s.a[i] + ahead * lags[i] * jerk
         s.v[i] += s.a[i] * tick_s
         apart_v[i] = s.v[i] - along[i]
         s.apart[i] += apart_v[i] * tick_s

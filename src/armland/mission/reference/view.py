@@ -52,8 +52,8 @@ LEAST_SPAN_M = 1e-3
 ASIDE_M = 0.4
 """Largest step sideways: no UAV that has just left the view is further from it."""
 
-WAITS_ABOVE_M, LOWERS_MPS = 0.4, 0.25
-"""Height above its station at which a UAV waits in wind, out of reach of the arm below should it sink; speed at which it comes down."""
+LOWERS_MPS = 0.25
+"""Speed at which a UAV that waits above its station in wind comes down."""
 
 PASSES_M = 0.1
 """Height of the pivot above the end effector from which on the UAV passes above the arm, which draws back meanwhile."""
@@ -89,7 +89,7 @@ def told(scenario: Scenario, lever: Array, lean: float = 0.0) -> Records:
     p["leans"] = lean > 0.0
     p["level"] = np.deg2rad(max(angle - (0.5 * min(camera.field_of_view_deg) - MARKER_DEG), 0.0))
     p["near"] = NEAR * (scenario.place.wait_below_m + p["line"][0, 2])
-    p["above"], p["lowers"] = (WAITS_ABOVE_M if lean > 0.0 else 0.0), LOWERS_MPS
+    p["above"], p["lowers"] = (scenario.place.waits_above_m if lean > 0.0 else 0.0), LOWERS_MPS
     p["lifts"] = ABOVE_M + (HEAVES_M if scenario.foretold_deck else 0.0)
     waits = scenario.place.catch_m[2] - scenario.place.wait_below_m
     p["highest"] = waits + DEEPEST * camera.depth_max_per_size * camera.marker_size_m - p["line"][0, 2]

@@ -27,7 +27,7 @@ def command(b: Record) -> None:
     """
     m, p, s, d, c = b.tick.measurement, b.told.act.uav, b.kept.act, b.kept.descent, b.tick.command
     if b.environment.moves:
-        ride(p.station, p.rides, p.lags, p.tick_s, b.environment, s.ride)
+        ride(p.station, p.rides, p.lags, p.ahead, p.tick_s, b.environment, s.ride)
     learn_trim(b)
     c.tick, c.uav_mode = m.tick, GUIDED
     if d.phase in (FIND, AWAY):
@@ -86,7 +86,7 @@ def _level_out(share: float, b: Record) -> None:
     p, s, env = b.told.act.uav, b.kept.act, b.environment
     level = np.array([np.cos(0.5 * p.heading), 0.0, 0.0, np.sin(0.5 * p.heading)])
     if env.moves:
-        level = multiply(multiply(conjugate(env.base_quat.copy()), deck_ahead(p.lags[0], env, s.ride)), level)
+        level = multiply(multiply(conjugate(env.base_quat.copy()), deck_ahead(p.ahead * p.lags[0], env, s.ride)), level)
     held = s.q_d.copy()
     q_d = multiply(from_rotation_vector(share * rotation_error(matrix(level), matrix(held))), level)
     for i in range(4):

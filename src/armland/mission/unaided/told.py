@@ -5,7 +5,7 @@ import numpy as np
 from armland.estimation import deck
 from armland.estimation.plate import layouts
 from armland.mission.belief import Flyer
-from armland.mission.told import ATTITUDE_LEAP_RAD, FELT, RIDES_RAD_S, tell_station
+from armland.mission.told import ATTITUDE_LEAP_RAD, FELT, tell_station
 from armland.mission.unaided.board import board_layout
 from armland.models.airframe.slope import tell_slope
 from armland.models.weather import STRONGEST, expected
@@ -34,7 +34,7 @@ def tell(scenario: Scenario, flyer: Flyer, stand: Array, eye: Array, pull: float
     _estimate(told["estimate"], scenario, flyer)
     _descent(told["descent"], scenario, stand, eye)
     told["descent"]["pull"] = pull
-    tell_station(told["act"]["uav"], scenario, flyer, stand, RIDES_RAD_S)
+    tell_station(told["act"]["uav"], scenario, flyer, stand)
     told["limit"]["tick_s"], limit = 1.0 / scenario.run.rate_hz, told["limit"]
     for name in ("q_max", "qd_max", "tau_max", "torque_rate", "hinge_max"):
         limit[name] = np.inf

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
-from armland.experiments.campaign.answers.report import mapped, point_names, report
+from armland.experiments.campaign.answers.report import mapped, names_of, point_names, report
 from armland.experiments.campaign.crews.threads import threads
 from armland.experiments.campaign.engine import conduct
 from armland.experiments.campaign.store import Store
@@ -49,6 +49,22 @@ def test_points_are_named_by_what_differs_and_compared_with_the_first(reported):
     (pairing,) = found.pairings
     assert (pairing.first, pairing.second, pairing.rate.pairs, pairing.rate.value) == (0, 1, 30, 0.0)
     assert mapped(found, table) == ("air.wind_mps", "uav.extra_mass_kg")
+
+
+def test_variants_are_named_and_compared_with_the_first(reported, described):
+    text = '[[variants]]\nname = "usual"\n[[variants]]\nname = "windy"\nvalues.air.wind_mps = 6.0\n'
+    found, _ = reported(14, text)
+    assert [p.name for p in found.points] == ["usual", "windy"]
+    assert [(p.first, p.second, p.rate.pairs) for p in found.pairings] == [(0, 1, 14)]
+    swept = described(
+        f"[parameters]\nair.wind_mps = {{sweep = [0.0, 6.0]}}\n{text.replace('values.air.wind_mps', 'values.uav.extra_mass_kg')}"
+    )
+    assert names_of(swept) == [
+        "usual, air.wind_mps = 0",
+        "usual, air.wind_mps = 6",
+        "windy, air.wind_mps = 0",
+        "windy, air.wind_mps = 6",
+    ]
 
 
 def test_worst_are_failed_flights_by_their_share_then_what_came_nearest(reported):

@@ -50,6 +50,18 @@ def test_a_cause_has_no_numbers():
     assert cause("distance: 0.02 m, above 0.015 m") == cause("distance: 0.03 m, above 0.015 m")
 
 
+def test_variants_are_columns_by_their_name(tmp_path):
+    """What each sets differs in kind, so its name stands for it, beside what is drawn."""
+    variants = [{"name": "usual", "values": {}}, {"name": "fast", "values": {"camera.rate_hz": 60}}]
+    described = {"variants": variants, "parameters": {"uav.extra_mass_kg": {"uniform": [0.0, 0.1]}}}
+    with Store(tmp_path / "c.sqlite", write=True) as store:
+        store.describe({"description": described})
+        for run, (point, more) in enumerate([(0, {}), (1, {"camera.rate_hz": 60})]):
+            result = {"seed": 1, "success": True, "reason": "landed"}
+            store.add(Row(run, point, 1, {"uav.extra_mass_kg": 0.05, **more}, True, "done", result), "v")
+        assert tabulate(store).values == {"variant": ["usual", "fast"], "uav.extra_mass_kg": [0.05, 0.05]}
+
+
 def test_a_store_without_rows_has_empty_columns(tmp_path):
     with Store(tmp_path / "b.sqlite", write=True) as store:
         table = tabulate(store)

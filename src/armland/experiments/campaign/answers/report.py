@@ -8,6 +8,7 @@ from scipy.stats import binomtest
 from armland.experiments.campaign.answers.paired import Pairing, compare
 from armland.experiments.campaign.answers.sensitivity import Sensitivity, as_numbers, sensitivity
 from armland.experiments.campaign.answers.table import Table, tabulate
+from armland.experiments.campaign.description import Description
 from armland.experiments.campaign.engine import Campaign, campaign_of
 from armland.experiments.campaign.rare.answer import Counted, RareReport, counted, rare_report
 from armland.experiments.campaign.rows import BROKE, KILLED, REFUSED
@@ -103,7 +104,7 @@ def report(store: Store) -> tuple[Report, Table]:
     """What the rows of a store say, and the rows as columns."""
     about = store.about
     campaign, table = campaign_of(about), tabulate(store)
-    names = point_names(campaign.schedule.points)
+    names = names_of(campaign.description)
     rare = rare_report(campaign, store) if campaign.rare else None
     watch = Watch(len(names), None)
     for run, success in zip(table.run, table.success, strict=True):
@@ -128,6 +129,18 @@ def report(store: Store) -> tuple[Report, Table]:
         rare,
         counted(campaign, store, table) if rare is None else (),
     ), table
+
+
+def names_of(description: Description) -> list[str]:
+    """What tells the points of a campaign apart: the name of the variant, and the values that are swept in it."""
+    grid = description.grid
+    if not description.variants:
+        return point_names(grid)
+    swept = point_names([{path: point[path] for path in description.swept} for point in grid])
+    return [
+        f"{name}, {values}" if description.swept else name
+        for name, values in zip(description.named, swept, strict=True)
+    ]
 
 
 def point_names(points: list[dict[str, Any]]) -> list[str]:

@@ -1,16 +1,21 @@
 """The rows of a store as columns, read one by one, so that a million of them need little memory."""
 
+import json
 import re
 from collections import Counter
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from armland.experiments.campaign.rows import BROKE, KILLED, REFUSED
+from armland.experiments.campaign.description import Description
+from armland.experiments.campaign.rows import BROKE, KILLED, REFUSED, Row
 from armland.experiments.campaign.store import Store
 from armland.experiments.campaign.summary import FIGURES, value
 from armland.rotations import Array
+
+VARIANT = "variant"
 
 _DETAIL = re.compile(r"\s*\([^()]*\)|-?\d+(\.\d+)?(e-?\d+)?")
 
@@ -30,7 +35,7 @@ class Table(NamedTuple):
     figures: dict[str, Array]
     """Key of `summary.FIGURES` -> (k,) values in the unit of the figure's name; NaN where a flight has none."""
     values: dict[str, list[Any]]
-    """Path in the scenario -> value of each row."""
+    """Path in the scenario -> value of each row; of variants, which set different paths, their names, as `VARIANT`."""
     reasons: dict[str, tuple[int, int]]
     """Why flights failed, in the words of the first -> how many have the same first cause, and the row of the first."""
     cpu_s: Array
@@ -56,6 +61,7 @@ def tabulate(store: Store) -> Table:
     figures: dict[str, list[float]] = {name: [] for name in FIGURES}
     values: dict[str, list[Any]] = {}
     reasons: dict[str, list[Any]] = {}
+    variant = _variants(store.about.get("description"))
     for row in store.rows():
         numbers.append((row.run, row.point, row.seed, row.success, row.cpu_s, row.wall_s))
         outcomes.append(row.outcome)
@@ -63,7 +69,7 @@ def tabulate(store: Store) -> Table:
         for name, column in figures.items():
             found = value(judged, name)
             column.append(np.nan if found is None else found)
-        for path, one in row.values.items():
+        for path, one in variant(row).items():
             values.setdefault(path, []).append(one)
         if not row.success:
             reason = judged["reason"]
@@ -83,6 +89,15 @@ def tabulate(store: Store) -> Table:
         np.array(cpu, float),
         np.array(wall, float),
     )
+
+
+def _variants(described: dict[str, Any] | None) -> Callable[[Row], dict[str, Any]]:
+    # What a row shows: its values, or where those differ in kind the name that stands for them, and what is drawn or swept beside.
+    if described is None or not described.get("variants"):
+        return lambda row: row.values
+    description = Description.model_validate_json(json.dumps(described))
+    names, beside = description.named, description.parameters
+    return lambda row: {VARIANT: names[row.point]} | {path: x for path, x in row.values.items() if path in beside}
 
 
 def cause(reason: str) -> str:

@@ -1,0 +1,1 @@
+"""A study for the eye: its table and its figure."""
