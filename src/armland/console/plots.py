@@ -189,6 +189,8 @@ class Charts:
             axes=axes,
             legend={"show": False},
             height=124,
+            # So that the topmost number is whole.
+            padding=(8, 8, 0, 0),
         )
 
 
