@@ -22,6 +22,7 @@ from armland.errors import ArmlandError
 from armland.experiments.campaign.description import read_description
 from armland.experiments.judge import judgement
 from armland.mission import registry
+from armland.mission.supervisor.remedies import REMEDIES
 from armland.records import MESSAGES
 from armland.scenario import Scenario, load_scenario
 
@@ -162,6 +163,17 @@ def test_files_that_a_block_writes_are_found() -> None:
     block = "cat > a.jsonl <<'END'\n{1}\n{2}\nEND\narmland run landing --operator a.jsonl\n"
     assert written(block) == [("a.jsonl", "{1}\n{2}\n")]
     assert command_lines(block) == ["armland run landing --operator a.jsonl"]
+
+
+def test_every_end_of_a_mission_has_its_cause_and_remedy() -> None:
+    text = (ROOT / "docs" / "troubleshooting.md").read_text("utf-8")
+    heads = "".join(re.findall(r"^### .*$", text, re.MULTILINE))
+    assert [fault for fault in REMEDIES if f"`{fault}`" not in heads] == []
+    told = re.findall(r"^\| `([^`]+)` \|.*\|.*\|.*\|$", text, re.MULTILINE)
+    missions = [*registry.MISSIONS.values(), *registry.UNAIDED.values()]
+    said = {why for mission in missions for why in mission.timeouts.values()}
+    assert len(said) > 20
+    assert [why for why in sorted(said) if not why.startswith(tuple(told))] == []
 
 
 TARGETS = re.findall(r"^(\w+):.*## ", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)

@@ -127,23 +127,32 @@ class Linked(_Intrinsic):  # type: ignore[misc]
         return f"armland.{self.__module__}.{self._name}.{kinds}"
 
     def expect(self, joints: int) -> None:
-        """Let it be called by what is compiled here and never run: its symbol leads nowhere."""
+        """Let it be called by what is compiled here and never run: its symbol leads nowhere, unless its address is known already."""
+        if joints in self._linked:
+            return
         arguments = tuple(self.types_of(joints))
         self._known.add(arguments)
         self._linked.add(joints)
         llvmlite.binding.add_symbol(self.symbol(arguments), 1)
 
     def link(self, joints: int) -> None:
-        """Compile it, or load it from the cache, and make its address known."""
-        if joints in self._linked:
-            return
-        self._linked.add(joints)
-        arguments = tuple(self.types_of(joints))
-        self._known.add(arguments)
-        self.dispatcher.compile(arguments)
-        result = self.dispatcher.overloads[arguments]
-        address = result.library.get_pointer_to_function(result.fndesc.mangled_name)
-        llvmlite.binding.add_symbol(self.symbol(arguments), address)
+        """Compile it, or load it from the cache, and make its address known; waits for another thread that does so.
+
+        Raises:
+            RuntimeError: what was compiled has no address.
+        """
+        with _LINKING:
+            if joints in self._linked:
+                return
+            arguments = tuple(self.types_of(joints))
+            self.dispatcher.compile(arguments)
+            result = self.dispatcher.overloads[arguments]
+            if not (address := result.library.get_pointer_to_function(result.fndesc.mangled_name)):
+                raise RuntimeError(f"{self._name} was compiled and has no address")
+            llvmlite.binding.add_symbol(self.symbol(arguments), address)
+            # Not before: who finds it linked loads what calls it, and a symbol without address is a jump to nowhere.
+            self._known.add(arguments)
+            self._linked.add(joints)
 
     def _typed(self, arguments: tuple[Any, ...]) -> Any:
         if arguments not in self._known:
@@ -186,7 +195,7 @@ def linked(types_of: Types, returns: Any = types.none) -> Callable[[Any], Any]:
     return made
 
 
-_LINKING = threading.Lock()
+_LINKING = threading.RLock()
 
 
 def link(joints: int) -> None:

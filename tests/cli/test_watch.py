@@ -36,6 +36,14 @@ def test_replay_prints_its_address_and_serves(armland, log, shown) -> None:
     assert shown[0].events[0].words == "self test"
 
 
+@pytest.mark.parametrize("mission", ["tether", "unassisted", "hexapod"])
+def test_console_says_who_flies_what_it_does_not(armland, mission) -> None:
+    done = armland("console", mission, *PLAIN)
+    assert done.code == 2
+    assert f"mission '{mission}' flies without an arm" in done.err
+    assert f"`armland run {mission}` flies it" in done.err
+
+
 def test_replay_of_two(armland, log, shown) -> None:
     assert armland("replay", str(log), str(log), *PLAIN).code == 0
     assert len(shown[0]._stages) == 2

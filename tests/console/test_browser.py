@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -127,15 +128,21 @@ class View:
 @contextmanager
 def served(*arguments: str):
     """The address of a command that serves a page, while it does."""
-    command = [sys.executable, "-m", "armland", *arguments, "--no-browser", "--port", "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, cwd=ROOT) as run:
+    # Should it crash, the stacks of its threads are told.
+    command = [sys.executable, "-X", "faulthandler", "-m", "armland", *arguments, "--no-browser", "--port", "0"]
+    with (
+        tempfile.TemporaryFile("w+") as said,
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said, text=True, cwd=ROOT) as run,
+    ):
         try:
             line = run.stdout.readline()
             assert "http" in line, line
             yield line.split()[2]
         finally:
             run.send_signal(2)
-            assert run.wait(timeout=60) in (0, 130)
+            ended = run.wait(timeout=60)
+            said.seek(0)
+            assert ended in (0, 130), said.read()
 
 
 def test_a_landing_is_steered_and_scrubbed_through(browser, log_file, tmp_path) -> None:

@@ -97,3 +97,12 @@ def test_lines_are_text_and_no_markup() -> None:
     assert "&lt;script&gt;" in lines_html(["<script>"])
     assert OVER in lines_html(["x"], warning=True)
     assert OVER not in lines_html(["x"])
+
+
+def test_where_no_arm_flies_nothing_is_said_of_one() -> None:
+    tick = np.zeros(1, tick_layout(0))
+    assert [bar.name for bar in bars_of(tick[0], {}, 0.25)] == ["link"]
+    html = shares_html(3.0, 0.0, 1.0, armless=True)
+    assert "pad 1.0 N" in html
+    assert "arm" not in html
+    assert "cradle" not in html

@@ -9,6 +9,7 @@ from armland.console.plots import (
     MOST_HZ,
     PANELS,
     Charts,
+    Curves,
     actions,
     curves_of,
     cut,
@@ -116,3 +117,17 @@ def test_a_single_point_is_no_chart(server, curves) -> None:
     before = charts._charts[0].data
     charts.show(cut(curves, 0.0, 0.01))
     assert charts._charts[0].data is before
+
+
+def test_where_no_arm_flies_no_chart_is_of_one(server) -> None:
+    shown = [words for panel in PANELS for _, words in panel.shown(arm=False)]
+    assert shown == ["UAV", "UAV to its place", "force", "rotors", "pad", "link"]
+    charts = Charts(server.viser.gui, ["now"], arm=False)
+    assert [PANELS[n].title.split(" (")[0] for n, _ in charts._shown] == [
+        *("height", "horizontal distance", "hinge force", "who carries the weight", "age of the UAV's sample"),
+    ]
+    time, few = np.arange(3.0), np.zeros(3, int)
+    lines = tuple(tuple(np.full(3, 10.0 * n + i) for i in range(len(p.lines))) for n, p in enumerate(PANELS))
+    charts.show(Curves(time, few, few, lines))
+    # Rotors and pad, of the fifth panel: the arm between them is left out.
+    assert [float(values[0]) for values in charts._charts[3].data[-2:]] == [40.0, 42.0]

@@ -148,11 +148,22 @@ def _defer_code(library: Any, context: Any) -> None:
             code._ensure_finalized()
         if deferred(code):
             return Inner(description.qualname)
+        _refuse_unknown(code, description.qualname)
         return executable(self, code, description, environment)
 
     library.finalize, library._optimize_functions = finalize_or_defer, optimize_functions
     library._optimize_final_module = optimize_final_module
     context.get_executable = get_executable
+
+
+def _refuse_unknown(code: Any, name: str) -> None:
+    # LLVM takes a symbol that nobody knows for the address 0, and the call for a crash. What comes from the cache may call one:
+    # sources that changed while the process ran have had others compiled.
+    from llvmlite.binding import address_of_symbol
+
+    for function in (code._shared_module or code._final_module).functions:
+        if function.is_declaration and function.name.startswith(PACKAGE) and not address_of_symbol(function.name):
+            raise RuntimeError(f"{name} calls {function.name}, whose address is not known: `linking.link` comes first")
 
 
 def _reached(libraries: Any) -> list[Any]:

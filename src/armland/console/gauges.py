@@ -30,15 +30,19 @@ def bars_of(tick: Records, limits: Mapping[str, Any], link_s: float) -> list[Bar
     """The limits of one tick.
 
     Args:
-        tick: a record of `records.tick_layout`.
+        tick: a record of `records.tick_layout`; where no arm flies, joints have no bars.
         limits: of `judge.brief.Brief`; one that is not there has no bar.
         link_s: age of the UAV's sample at which it counts as silent, s.
     """
-    health = tick["health"]
-    bars = [
-        Bar("joint torque", float(health["torque_ratio"]), f"{100 * health['torque_ratio']:.0f} % of its limit"),
-        Bar("joint speed", float(health["speed_ratio"]), f"{100 * health['speed_ratio']:.0f} % of its limit"),
-    ]
+    health, arm = tick["health"], len(tick["truth"]["q"]) > 0
+    bars = (
+        []
+        if not arm
+        else [
+            Bar("joint torque", float(health["torque_ratio"]), f"{100 * health['torque_ratio']:.0f} % of its limit"),
+            Bar("joint speed", float(health["speed_ratio"]), f"{100 * health['speed_ratio']:.0f} % of its limit"),
+        ]
+    )
     if "sigma_min" in limits:
         bound = float(np.max(limits["sigma_min"]))
         used = bound / max(float(health["sigma_min"]), 1e-9)
@@ -46,8 +50,9 @@ def bars_of(tick: Records, limits: Mapping[str, Any], link_s: float) -> list[Bar
     if "hinge_max" in limits:
         force, bound = float(np.linalg.norm(tick["truth"]["hinge_force"])), float(np.max(limits["hinge_max"]))
         bars.append(Bar("hinge force", force / bound, f"{force:.1f} N, at most {bound:.0f} N"))
-    margin = float(health["joint_margin"])
-    bars.append(Bar("joint range", NEAR_END_RAD / max(margin, 1e-9), f"{margin:.2f} rad to an end"))
+    if arm:
+        margin = float(health["joint_margin"])
+        bars.append(Bar("joint range", NEAR_END_RAD / max(margin, 1e-9), f"{margin:.2f} rad to an end"))
     age = float(health["uav_age"])
     bars.append(Bar("link", age / link_s, f"{1e3 * age:.0f} ms, at most {1e3 * link_s:.0f} ms"))
     return bars
@@ -68,12 +73,12 @@ def bars_html(bars: Sequence[Bar]) -> str:
     return f'<div style="{BLOCK}">{"".join(rows)}</div>'
 
 
-def shares_html(rotors: float, arm: float, cradle: float) -> str:
-    """Who carries the weight: vertical forces, N, as one stacked bar."""
+def shares_html(rotors: float, arm: float, cradle: float, armless: bool = False) -> str:
+    """Who carries the weight: vertical forces, N, as one stacked bar; `armless` where rotors and a pad do."""
     parts = [
         ("rotors", max(rotors, 0.0), "#0072B2"),
-        ("arm", max(arm, 0.0), "#D55E00"),
-        ("cradle", max(cradle, 0.0), GOOD),
+        *([] if armless else [("arm", max(arm, 0.0), "#D55E00")]),
+        ("pad" if armless else "cradle", max(cradle, 0.0), GOOD),
     ]
     total = sum(force for _, force, _ in parts) or 1.0
     blocks = "".join(

@@ -37,6 +37,18 @@ class Panel(NamedTuple):
 
     title: str
     lines: dict[str, Callable[[Records], Array]]
+    of_arm: bool = False
+    """Whether it says nothing where no arm flies."""
+
+    def shown(self, arm: bool) -> list[tuple[int, str]]:
+        """Number and label of each line that is shown, where an arm flies or none."""
+        if arm:
+            return list(enumerate(self.lines))
+        return [] if self.of_arm else [(i, ARMLESS.get(n, n)) for i, n in enumerate(self.lines) if n != "arm"]
+
+
+ARMLESS = {"UAV to arm": "UAV to its place", "cradle": "pad"}
+"""Labels of lines where no arm flies; a line of the arm is left out."""
 
 
 def _norm(message: str, field: str) -> Callable[[Records], Array]:
@@ -53,12 +65,13 @@ PANELS = (
     Panel(
         "error of the arm (mm)",
         {"to its reference": lambda t: 1e3 * np.linalg.norm(t["estimate"]["r"] - t["reference"]["r"], axis=1)},
+        of_arm=True,
     ),
     Panel("hinge force (N)", {"force": _norm("truth", "hinge_force")}),
     Panel("who carries the weight (N)", {"rotors": _force(0), "arm": _force(1), "cradle": _force(2)}),
-    Panel("V₂ (J); 0: no law of it at work", {"V₂": lambda t: np.nan_to_num(t["proof"]["v2"])}),
-    Panel("rate of V₂ (W)", {"promised": lambda t: np.nan_to_num(t["proof"]["v2_rate"])}),
-    Panel("largest joint torque over its limit (1)", {"torque": lambda t: t["health"]["torque_ratio"]}),
+    Panel("V₂ (J); 0: no law of it at work", {"V₂": lambda t: np.nan_to_num(t["proof"]["v2"])}, True),
+    Panel("rate of V₂ (W)", {"promised": lambda t: np.nan_to_num(t["proof"]["v2_rate"])}, True),
+    Panel("largest joint torque over its limit (1)", {"torque": lambda t: t["health"]["torque_ratio"]}, True),
     Panel("age of the UAV's sample (ms)", {"link": lambda t: 1e3 * t["health"]["uav_age"]}),
 )
 
@@ -117,11 +130,16 @@ class Charts:
     Args:
         gui: where they are added.
         names: of the flights: one, or two, short, whose difference is shown as well.
+        arm: whether an arm flies in any of them.
     """
 
-    def __init__(self, gui: GuiApi, names: Sequence[str]) -> None:
+    def __init__(self, gui: GuiApi, names: Sequence[str], arm: bool = True) -> None:
         self._two = len(names) > 1
-        self._charts = [self._chart(gui, panel, names) for panel in PANELS]
+        shown = [(number, panel.shown(arm)) for number, panel in enumerate(PANELS)]
+        self._shown = [(number, lines) for number, lines in shown if lines]
+        self._charts = [
+            self._chart(gui, PANELS[n].title, [word for _, word in lines], names) for n, lines in self._shown
+        ]
 
     def show(self, curves: Curves, other: Curves | None = None, now: float | None = None) -> None:
         """Show a window of curves.
@@ -138,13 +156,14 @@ class Charts:
         here = np.zeros(len(curves.time))
         if now is not None:
             here[int(np.clip(np.searchsorted(curves.time, now), 0, len(here) - 1))] = 1.0
-        for i, chart in enumerate(self._charts):
-            lines = list(curves.lines[i])
+        for (number, shown), chart in zip(self._shown, self._charts, strict=True):
+            lines = [curves.lines[number][i] for i, _ in shown]
             if self._two and other is not None:
-                lines += [*other.lines[i], *(a - b for a, b in zip(curves.lines[i], other.lines[i], strict=True))]
+                beside = [other.lines[number][i] for i, _ in shown]
+                lines += [*beside, *(a - b for a, b in zip(lines, beside, strict=True))]
             put_curves(chart, (curves.time, *ground, here, *lines))
 
-    def _chart(self, gui: GuiApi, panel: Panel, names: Sequence[str]) -> Any:
+    def _chart(self, gui: GuiApi, title: str, labels: Sequence[str], names: Sequence[str]) -> Any:
         ground: dict[str, Any] = {"scale": "ground", "width": 0, "points": {"show": False}}
         series: list[dict[str, Any]] = [
             {"label": "s"},
@@ -154,12 +173,12 @@ class Charts:
         ]
         lines: list[dict[str, Any]] = []
         for flight, name in enumerate(names):
-            for i, line in enumerate(panel.lines):
+            for i, line in enumerate(labels):
                 label = f"{line} {name}" if self._two else line
                 lines.append(_line(label, COLORS[i % len(COLORS)], dashed=flight > 0))
         if self._two:
-            lines += [_line("difference" if i == 0 else "", "#999999") for i in range(len(panel.lines))]
-        gui.add_html(_title(panel.title, lines))
+            lines += [_line("difference" if i == 0 else "", "#999999") for i in range(len(labels))]
+        gui.add_html(_title(title, lines))
         series += lines
         axis: dict[str, Any] = {"font": "10px sans-serif", "stroke": AXIS, "grid": {"stroke": f"{AXIS}55", "width": 1}}
         axes: Any = ({"size": 28, **axis}, {"size": 46, **axis})
@@ -170,6 +189,8 @@ class Charts:
             axes=axes,
             legend={"show": False},
             height=124,
+            # So that the topmost number is whole.
+            padding=(8, 8, 0, 0),
         )
 
 

@@ -80,6 +80,11 @@ class Recording:
             return ""
 
     @property
+    def joints(self) -> int:
+        """Of the arm that flew; 0 where none did."""
+        return int(self.ticks["truth"]["q"].shape[1])
+
+    @property
     def begin(self) -> float:
         """Time of the first tick, s."""
         return float(self.curves.time[0])
@@ -144,7 +149,7 @@ class Recording:
         metadata, name = self.log.metadata, self.file.name
         try:
             scene = scene_of(metadata)
-            if scene.joints == self.ticks["truth"]["q"].shape[1]:
+            if scene.joints == self.joints:
                 return scene
             lost = LogError("its arm has not as many joints as its scenario's")
         except LogError as no:

@@ -69,7 +69,8 @@ class Replay:
         gui.add_html("".join(command_html(run.command) for run in self._runs if run.command))
         with plots_panel(server.viser):
             self._sight = gui.add_html("")
-            self._charts = Charts(gui, [str(i) for i, _ in enumerate(self._runs, start=1)])
+            numbers = [str(i) for i, _ in enumerate(self._runs, start=1)]
+            self._charts = Charts(gui, numbers, any(run.joints for run in self._runs))
 
     @property
     def events(self) -> list[Event]:
@@ -121,7 +122,9 @@ class Replay:
             stage = Stage(api, run.scene, f"/flight_{i + 1}", run.weight, run.scenario, envelope, i > 0, run.armless)
             self._stages.append((run, stage))
         if self._stages:
-            put_camera(self._server.viser, np.array(self._stages[0][0].at(0.0)["truth"]["ee"]))
+            first, stage = self._stages[0]
+            seen = first.at(0.0)["truth"]["ee"] if first.joints else stage.poses.scene.put_down
+            put_camera(self._server.viser, np.array(seen))
 
     def _build_controls(self, gui: Any) -> None:
         names = [run.name for run in self._runs]
@@ -211,7 +214,7 @@ class Replay:
         lines += [f"limits at work: {', '.join(flags)}"] if flags else []
         return (
             lines_html(lines)
-            + shares_html(rotors, arm, cradle)
+            + shares_html(rotors, arm, cradle, not run.joints)
             + bars_html(bars_of(tick, self._limits, SILENT_S))
             + lines_html(done[-4:], warning=True)
         )

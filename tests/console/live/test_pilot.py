@@ -12,6 +12,7 @@ from armland.experiments.episode import prepare
 from armland.experiments.operator.hand import Hand
 from armland.experiments.operator.message import asked
 from armland.experiments.operator.script import first_difference, read_script
+from armland.mission.table.phases import SIGNALS
 from armland.runtime.log import read_log
 
 SECONDS = 60.0
@@ -123,7 +124,7 @@ def test_what_pages_need_is_left_behind_whole(pilot, wait_until, landed) -> None
     assert drained(pilot.flight.thinned) == []
     now = pilot.flight.now
     assert now.tick.tobytes() == landed.ticks[-1:].tobytes()
-    assert now.signals.shape == (25,)
+    assert now.signals.shape == (len(SIGNALS),)
 
 
 @pytest.mark.slow

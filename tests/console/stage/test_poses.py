@@ -7,6 +7,7 @@ from armland.console.stage.poses import Poses, armless_scene_of, forces_from, sc
 from armland.errors import LogError
 from armland.experiments.episode import fly
 from armland.plant.scene.eye import CAMERA
+from armland.scenario import load_scenario
 
 
 def check(ticks, metadata, rows) -> None:
@@ -33,6 +34,17 @@ def test_an_experiment_on_the_hinge_too(paper) -> None:
     scenario = paper.replaced({"run": {"duration_s": 3.0}})
     episode = fly(scenario, "E1", 1)
     check(episode.ticks, episode.metadata, range(0, len(episode.ticks), 499))
+
+
+@pytest.mark.parametrize(("mission", "sea"), [("tether", "calm"), ("hexapod", "ss2")])
+def test_a_landing_without_an_arm_stands_on_its_pad(mission, sea) -> None:
+    scenario = load_scenario(mission, {"run": {"duration_s": 1.0}, "sea": {"state": sea}})
+    episode = fly(scenario, mission, 1)
+    check(episode.ticks, episode.metadata, range(0, len(episode.ticks), 99))
+    scene = scene_of(episode.metadata)
+    assert scene.joints == 0
+    assert scene.model.body("pad").id > 0
+    assert not [b for b in range(scene.model.nbody) if scene.model.body(b).name.startswith("arm/")]
 
 
 @pytest.mark.slow

@@ -50,6 +50,15 @@ def test_page_says_what_the_report_says(text, made):
     assert report.versions["mujoco"] in text
 
 
+def test_page_is_read_by_ear_and_in_the_dark(text):
+    assert text.count("<main>") == text.count("</main>") == 1
+    assert text.index("<main>") < text.index("<h1>")
+    assert re.findall(r"<th[^>]*></th>", text) == []
+    light, dark = (dict(re.findall(r"(--\w+): (#\w+)", rule)) for rule in re.findall(r":root \{[^}]*\}", text))
+    assert light.keys() == dark.keys()
+    assert set(re.findall(r"var\((--\w+)\)", text)) == light.keys()
+
+
 def test_titles_are_text_and_no_tags(text):
     assert "Wind &amp; &lt;load&gt;" in text
     assert "<load>" not in text

@@ -8,7 +8,7 @@ import pytest
 from armland.experiments.episode import fly
 from armland.runtime.log import read_log
 from armland.scenario import load_scenario
-from armland.view.page.again import again, study_again, toml
+from armland.view.page.again import again, own_scenario, study_again, toml
 
 CASES = {
     "plain": ("land", "--seed", "3"),
@@ -19,6 +19,7 @@ CASES = {
     "uav": ("land", "--uav", "x500", "--deviation", "nominal"),
     "row": ("run", "track", "compare", "--experiment", "observer"),
     "experiment": ("run", "E2", "--seed", "4"),
+    "without an arm": ("run", "tether", "--seed", "5"),
 }
 
 
@@ -40,6 +41,14 @@ def test_command_sets_the_same(armland, tmp_path, case) -> None:
     same = {k: v for k, v in one.metadata.items() if k != "overrides"}
     assert same == {k: v for k, v in two.metadata.items() if k != "overrides"}
     assert one.ticks.tobytes() == two.ticks.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("mission", "hinged", "name"),
+    [("landing", False, "landing"), ("E1", True, "paper"), ("tether", False, "tether"), ("hexapod", False, "hexapod")],
+)
+def test_scenario_of_a_mission_where_none_is_named(mission, hinged, name) -> None:
+    assert own_scenario(mission, hinged) == name
 
 
 def test_own_scenario_is_shown_to_be_saved(tmp_path) -> None:

@@ -114,9 +114,9 @@ def takeoff(**given: Any) -> None:
 def loaded_for(mission: str, given: dict[str, Any]) -> "Scenario":
     """The scenario that a mission is flown with, as the options `given` say; errors as for `options.load`."""
     from armland.mission.registry import mission_named
+    from armland.view.page.again import own_scenario
 
-    hinged = mission_named(mission).start == "hinged"
-    name = given["scenario"] or ("paper" if hinged else "landing")
+    name = given["scenario"] or own_scenario(mission, mission_named(mission).start == "hinged")
     return options.load_flown(mission, name, given)
 
 

@@ -93,8 +93,9 @@ def console(**given: Any) -> None:
     said: list[Any] = []
     pilot = Pilot(prepared, given["out"], lambda words: said[0].say(words) if said else None)
     server = _serve(given, "armland console", lambda words: said[0].say(words) if said else None)
-    said.append(Console(server, pilot, first, settings))
     try:
+        # It may be stopped as soon as its address is known.
+        said.append(Console(server, pilot, first, settings))
         said[0].run()
     except KeyboardInterrupt:
         pass
@@ -132,11 +133,18 @@ def replay(**given: Any) -> None:
 def _first_choice(given: dict[str, Any]) -> "Choices":
     # What the command line says of the first flight, as the page has it.
     from armland.console.live.choices import chosen
-    from armland.mission.registry import mission_named
+    from armland.errors import ConfigurationError
+    from armland.mission.registry import MISSIONS, mission_named
+    from armland.view.page.again import own_scenario
 
-    hinged = mission_named(given["mission"]).start == "hinged"
+    mission = mission_named(given["mission"])
+    if mission.name not in MISSIONS:
+        raise ConfigurationError(
+            f"mission {mission.name!r} flies without an arm and is not steered by hand: `armland run {mission.name}` flies it, "
+            f"`armland replay` shows its log; the console flies {', '.join(MISSIONS)}"
+        )
     named = {name: given[name] or "" for name in ("arm", "ee", "uav", "law", "sea")}
-    own = given["scenario"] or ("paper" if hinged else "landing")
+    own = given["scenario"] or own_scenario(mission.name, mission.start == "hinged")
     numbers = {"seed": 1 if given["seed"] is None else given["seed"], "wind": given["wind"] or 0.0}
     return chosen({"mission": given["mission"], "scenario": own, **named, **numbers})
 

@@ -19,12 +19,13 @@ import numpy as np
 from armland.errors import ArmlandError, LogError
 from armland.models.arm_file.spec import PREFIX
 from armland.models.description import EE_SITE
-from armland.plant.scene.composition import Scene, build_scene
+from armland.plant.scene.composition import Scene
 from armland.plant.scene.uav import UAV
 from armland.records import Records
 from armland.rotations import Array, matrix, quaternion_of
 from armland.scenario import Scenario
 from armland.scenario.arm import Arm
+from armland.view.film.stage import scene_of as flown_scene
 
 
 def scene_of(metadata: Mapping[str, str]) -> Scene:
@@ -43,8 +44,8 @@ def armless_scene_of(metadata: Mapping[str, str]) -> Scene:
 
 def _scene_of(metadata: Mapping[str, str], changed: Callable[[Scenario], Scenario]) -> Scene:
     try:
-        scenario = changed(Scenario.model_validate_json(metadata["scenario"]))
-        return build_scene(scenario, "hinged" if metadata["start"] == "hinged" else "free")
+        text, _ = metadata["scenario"], metadata["start"]
+        return flown_scene(changed(Scenario.model_validate_json(text)), metadata)
     except KeyError as e:
         raise LogError(
             f"the log's metadata has no {e.args[0]!r}, without which there is no picture of its scene"

@@ -7,12 +7,14 @@ ellipsoids, of which UAV, plate and gear consist. A rendered picture takes a hun
 from html import escape
 from typing import Any
 
+import mujoco
 import numpy as np
 
 from armland.console.stage.outlines import NEAR_M, Hull, Outlines, hull_of, outline
 from armland.console.stage.poses import Poses, turn_of
 from armland.console.stage.shapes import color_of, drawn, triangles
 from armland.plant.scene.eye import CAMERA, MARKER
+from armland.plant.scene.pad import PAD
 from armland.records import Records
 from armland.rotations import Array, matrix
 from armland.scenario.sensing import Camera
@@ -39,7 +41,9 @@ class Sight:
         self.poses, self._camera = poses, camera
         self._half = np.tan(0.5 * np.deg2rad(camera.field_of_view_deg))
         shapes = [(hull, _color(model, g)) for g in drawn(model) if (hull := _hull(model, g)) is not None]
-        shapes = [(hull, color) for hull, color in shapes if hull.body not in poses.absent]
+        # Through a window of the pad the camera looks up past it.
+        unseen = poses.absent | {mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, PAD)}
+        shapes = [(hull, color) for hull, color in shapes if hull.body not in unseen]
         self._colors = [color for _, color in shapes]
         self._outlines = Outlines([hull for hull, _ in shapes], self._half)
         self._uav = int(model.geom_bodyid[model.geom(MARKER).id])

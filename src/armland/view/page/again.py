@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from armland.control.laws.settings import row_of
 from armland.errors import ArmlandError
+from armland.mission.registry import UNAIDED
 from armland.runtime.recorder import SCENARIO_NAME
 from armland.scenario import Scenario
 from armland.scenario.files.loading import SCENARIOS
@@ -28,6 +29,11 @@ class Again(NamedTuple):
     """Text of the scenario's file where that is none which comes with armland; it has to be saved first."""
 
 
+def own_scenario(mission: str, hinged: bool) -> str:
+    """Name of the scenario that a mission is flown with where none is named."""
+    return mission if mission in UNAIDED else "paper" if hinged else "landing"
+
+
 def again(metadata: Mapping[str, str], attached: bytes | None, more: tuple[str, ...] = ()) -> Again:
     """The command that flies a run again.
 
@@ -36,7 +42,8 @@ def again(metadata: Mapping[str, str], attached: bytes | None, more: tuple[str, 
         attached: the scenario's file, as the log holds it.
         more: words of the command line beside those that the log knows, such as `--seeds 20`.
     """
-    mission, default = metadata["mission"], "paper" if metadata.get("start") == "hinged" else "landing"
+    mission = metadata["mission"]
+    default = own_scenario(mission, metadata.get("start") == "hinged")
     words = [NAMED[mission]] if mission in NAMED else ["run", mission]
     words += [name for name in (_file(attached),) if name != default]
     if metadata.get("experiment") and metadata["experiment"] != mission:
@@ -102,6 +109,9 @@ def _shipped(attached: bytes | None) -> str | None:
 
 def _chosen_law(metadata: Mapping[str, str]) -> bool:
     # Whether the command line chose the law: neither the scenario's own nor the mission's.
+    if metadata["mission"] in UNAIDED:
+        # It is always its own.
+        return False
     scenario = json.loads(metadata.get("scenario") or "{}")
     row = scenario.get("experiments", {}).get(metadata.get("experiment") or "", {}).get("law", "exact")
     own = scenario.get("control", {}).get("law") or row
