@@ -48,7 +48,13 @@ def differ(a, b, head=""):
         ("prediction by τ", {"act.uav.ahead"}),
         (
             "accelerometers",
-            {"estimate.filter.gust_max", "estimate.filter.forgotten", "act.uav.reckoned", "act.uav.fades"},
+            {
+                "estimate.filter.gust_max",
+                "estimate.filter.forgotten",
+                "estimate.filter.bias_prior",
+                "act.uav.reckoned",
+                "act.uav.fades",
+            },
         ),
         ("gusts cancelled", {"act.uav.gust_share"}),
         ("room above", {"act.uav.sight.above"}),

@@ -142,7 +142,13 @@ def left_in_gust(scenario: Scenario, mass: float, w20: float, gust: float) -> fl
 
 
 def holds_height_in(scenario: Scenario, mass: float, gust: float) -> float:
-    """Strongest W₂₀, m/s, in which the UAV holds its height through gusts of `gust` standard deviations; as `left_in_gust`."""
+    """Strongest W₂₀, m/s, in which the UAV holds its height through a gust.
+
+    Args:
+        scenario: as for `left_in_gust`.
+        mass: kg, of all that flies.
+        gust: standard deviations of it, 1.
+    """
     low, high = 0.0, STRONGEST_MPS
     for _ in range(SEARCHES):
         middle = 0.5 * (low + high)
@@ -151,7 +157,12 @@ def holds_height_in(scenario: Scenario, mass: float, gust: float) -> float:
 
 
 def told_gusts(scenario: Scenario, mass: float) -> str:
-    """A sentence on a wind whose gusts take the UAV down with all its thrust; empty where those of two standard deviations do not."""
+    """A sentence on a wind whose gusts take the UAV down with all its thrust; empty where those of two standard deviations do not.
+
+    Args:
+        scenario: as it flies, with the wind that its user foretells.
+        mass: kg, of all that flies.
+    """
     w20, often, seldom = scenario.foretold_mps, *(holds_height_in(scenario, mass, k) for k in (1.0, 2.0))
     if w20 <= seldom:
         return ""
