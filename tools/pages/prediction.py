@@ -15,7 +15,7 @@ from numba import njit
 from scipy.spatial.transform import Rotation
 
 from armland.cli.options import load
-from armland.estimation import deck, prediction
+from armland.estimation import deck
 from armland.experiments.episode import prepare
 from armland.mission.reference import riding
 from armland.models.environment import on_land
@@ -25,6 +25,7 @@ from armland.runtime import loops
 from armland.runtime.recorder import Recorder
 from armland.scenario import Scenario
 from armland.view.figures.canvas import PAGE_IN, drawn, sheet
+from pages import foresight
 
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
 
@@ -47,9 +48,7 @@ SEEN = ("tilt of the deck (°)", "way of the deck (mm)", "plate (mm)")
 FLIES = ("find", "self_test", "guide", "approach", "align", "miss")
 """Phases in which the UAV flies guided."""
 
-KEPT = np.dtype(
-    [("deck", deck.kept_layout()), ("prediction", prediction.kept_layout()), ("ride", riding.kept_layout())]
-)
+KEPT = np.dtype([("deck", deck.kept_layout()), ("prediction", foresight.kept_layout()), ("ride", riding.kept_layout())])
 """What is remembered from tick to tick."""
 
 BEGINS_S, EVERY = 3.0, 20
@@ -80,7 +79,7 @@ def said(ticks: Records, told: Record, kept: Record, e: Record, ask: Array, hori
     gravity, next_one, s, uav = e[0].gravity.copy(), 0, kept.prediction, told.act.uav
     for k in range(len(ticks)):
         deck.know_deck(ticks[k].measurement, gravity, 1e-3, told.estimate.deck, kept.deck, e[0])
-        prediction.foresee(k, 1e-3, e[0], s)
+        foresight.foresee(k, 1e-3, e[0], s)
         riding.ride(told.decide.station.copy(), uav.rides, uav.lags.copy(), 1e-3, e[0], kept.ride)
         if next_one < len(ask) and ask[next_one] == k:
             since = (k - s.tick) * 1e-3
@@ -88,8 +87,8 @@ def said(ticks: Records, told: Record, kept: Record, e: Record, ask: Array, hori
                 _say(ticks[k].estimate, e[0], horizons[j], out[next_one, j])
                 p = ticks[k].estimate
                 plate = p.plate.copy(), p.plate_v.copy(), p.plate_a.copy()
-                place, _ = prediction.plate_ahead(horizons[j], since, plate, kept.ride.share, e[0], s, ahead[0])
-                way = prediction.ahead(horizons[j], since, e[0], s, ahead[0])
+                place, _ = foresight.plate_ahead(horizons[j], since, plate, kept.ride.share, e[0], s, ahead[0])
+                way = foresight.ahead(horizons[j], since, e[0], s, ahead[0])
                 then = matrix(e[0].base_quat.copy()).T @ matrix(ahead[0].base_quat.copy())
                 out[next_one, j, 3, :3], out[next_one, j, 3, 3:6] = rotation_error(np.eye(3), then), way
                 out[next_one, j, 3, 6:] = place

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from armland.estimation.prediction import FORGETS, LASTS_S, ORDER, ahead, at, foresee, kept_layout, plate_ahead
 from armland.models.environment import on_land
 from armland.plant.sea.timed import TO_JOINTS, deck_motion
 from armland.scenario import load_scenario
+from pages.foresight import FORGETS, LASTS_S, ORDER, ahead, at, foresee, kept_layout, plate_ahead
 
 STEP_S = 0.1
 NOISE = np.array([0.5e-3] * 3 + [0.01] * 3)  # rad/s, m/s², of what (D.1) leaves

@@ -73,7 +73,7 @@ def kept_layout() -> np.dtype:
     )
 
 
-@njit(cache=True)
+@njit
 def foresee(tick: int, tick_s: float, e: Record, s: Record) -> None:
     """Take a sample of the deck where it is time, learn from it and say how the motion goes on.
 
@@ -104,7 +104,7 @@ def foresee(tick: int, tick_s: float, e: Record, s: Record) -> None:
     s.samples, s.tick = s.samples + 1, tick
 
 
-@njit(cache=True)
+@njit
 def motion(e: Record) -> Array:
     """ω_b and a_b (6,), rad/s and m/s², D, of the environment `e`."""
     out = np.empty(6)
@@ -113,7 +113,7 @@ def motion(e: Record) -> Array:
     return out
 
 
-@njit(cache=True)
+@njit
 def _measure(now: Array, s: Record) -> None:
     if s.samples <= s.said.shape[0]:
         return
@@ -127,7 +127,7 @@ def _measure(now: Array, s: Record) -> None:
         s.size2[kind] += gain * (size2 - s.size2[kind])
 
 
-@njit(cache=True)
+@njit
 def _learn(y: float, phi: Array, theta: Array, P: Array) -> None:
     # (D.2) of one motion.
     spread, total, error = np.zeros(ORDER), FORGETS, y
@@ -149,7 +149,7 @@ def _learn(y: float, phi: Array, theta: Array, P: Array) -> None:
                 P[k, i] *= shrink
 
 
-@njit(cache=True)
+@njit
 def _go_on(c: int, s: Record) -> None:
     # Motion `c` of the steps ahead; no further than four times what it was of late, should its coefficients not be stable.
     most = 0.0
@@ -163,7 +163,7 @@ def _go_on(c: int, s: Record) -> None:
         s.course[2 + k, c] = min(max(y, -most), most)
 
 
-@njit(cache=True)
+@njit
 def at(later_s: float, s: Record) -> Array:
     """ω_b and a_b (6,), rad/s and m/s², D, `later_s` ≥ 0, s, after the newest sample; `s` of `kept_layout`."""
     u = min(max(later_s / PERIOD_S, 0.0), STEPS - 1.0)
@@ -183,7 +183,7 @@ def at(later_s: float, s: Record) -> Array:
     return out
 
 
-@njit(cache=True)
+@njit
 def ahead(horizon_s: float, since_s: float, e: Record, s: Record, out: Record) -> Array:
     """Fill the environment `out` with what that of now will be; returns the way (3,), m, of the deck's origin, in the axes of now.
 
@@ -215,7 +215,7 @@ def ahead(horizon_s: float, since_s: float, e: Record, s: Record, out: Record) -
     return way
 
 
-@njit(cache=True)
+@njit
 def _course(later_s: float, since_s: float, e: Record, s: Record) -> Array:
     # ω_b and a_b (6,) `later_s` after now, beginning with what is known now.
     now = motion(e)
@@ -224,7 +224,7 @@ def _course(later_s: float, since_s: float, e: Record, s: Record) -> Array:
     return at(since_s + later_s, s) + (now - at(since_s, s)) * np.exp(-later_s / PERIOD_S)
 
 
-@njit(cache=True)
+@njit
 def plate_ahead(
     horizon_s: float, since_s: float, plate: tuple[Array, Array, Array], along: float, e: Record, s: Record, out: Record
 ) -> tuple[Array, Array]:
