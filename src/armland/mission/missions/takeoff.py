@@ -30,9 +30,10 @@ A magnet keeps up to 2.7 times that at published deviations; the rest is pulled 
 QUICKEST = 0.5
 """Share of its usual time in which the arm leaves, at least."""
 
-LULL, LULL_S = 0.75, 0.5
+LULL, HUNG, LULL_S = 0.55, 0.1, 0.5
 """In wind and above a deck that moves: thrust that the rotors must have to spare before the UAV is let go, over what they have where
-nothing blows, and for how long. It hangs safely on the arm, and sinks onto it where a gust takes the rest."""
+nothing blows; share of its weight that may hang on the arm meanwhile, which a gust that begins makes more; and for how long. It
+hangs safely on the arm, and sinks onto it where a gust takes the rest."""
 
 PRESSED, MOST_PRESSED, PRESSES_S = 3.0, 0.7, 0.01
 """Push on the plate over that of a contact, at most over the UAV's weight, at which one that hangs aslant lies flat on the magnet, and
@@ -104,7 +105,7 @@ ROUGH = {
     .to("grip", "contact > half, progress > half, gap < let_go_m, pull < pressed_n", PRESSES_S),
     # On the arm it is safe for as long as a gust lasts that takes all its thrust; let go then it would sink onto the arm.
     "hand_back": HAND_BACK._replace(timeout_s=LOOKS_S).to(
-        "release", f"hinge_force < force_balanced_n, {LEVEL}, spare > spare_least", LULL_S
+        "release", f"hinge_force < force_balanced_n, {LEVEL}, spare > spare_least, arm_share < share_hung", LULL_S
     ),
     # It answers gusts from the first moment on, and is free as soon as the current is gone.
     "release": _BY_NAME["release"]._replace(uav="station", guards=()).to("clear", "elapsed > current_gone_s"),
@@ -215,6 +216,7 @@ TAKEOFF = Mission(
     moves=MOVES,
     thresholds=lambda s: {
         "spare_least": LULL,
+        "share_hung": HUNG,
         "pressed_n": -pressing_n(s),
         "current_gone_s": CURRENT_GONE_S,
         "flown_s": FLOWN_S,
