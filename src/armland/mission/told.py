@@ -22,7 +22,7 @@ from armland.mission.feasibility.weight import hover_max
 from armland.mission.reference import view
 from armland.mission.reference.guided import SEEN_S
 from armland.mission.reference.moves import FLOOR_M
-from armland.mission.supervisor.faults import PLUNGES_MPS, SINKS_MPS
+from armland.mission.supervisor.faults import GUSTS_S, PLUNGES_MPS, SINKS_MPS
 from armland.mission.table.mission import Start
 from armland.mission.uav import LEANT_MPS2, RECKONED_S
 from armland.models.airframe.lift import lift_range
@@ -177,11 +177,11 @@ def _decide(p: Records, t: Telling) -> None:
     watch["load_missed"] = min(limits.load_gone_n, MISSED_SHARE * s.control.thrust.slack_n)
     watch["hinge_max"], watch["tilt_max"] = limits.hinge_force_share * s.magnet.rating_n, np.deg2rad(limits.tilt_deg)
     _, static = lift_range(s)
-    # One that flies on with all its thrust need not hover.
-    air = GUST * expected(s).sinking
+    air, windy = GUST * expected(s).sinking, expected(s).mean > 0.0
     watch["sinks"], watch["plunges"] = SINKS_MPS + air, PLUNGES_MPS + air
     watch["thrust_max"] = s.control.thrust.ceiling * static
-    watch["hover_max"] = np.inf if s.place.fly_on else hover_max(s, expected(s).mean > 0.0)
+    # One that flies on with all its thrust need not hover.
+    watch["gust"], watch["hover_max"] = windy * GUSTS_S, np.inf if s.place.fly_on else hover_max(s, windy)
     watch["joint_margin"], watch["sigma_min"] = limits.joint_margin_rad, limits.sigma_min
     watch["speed_share"] = limits.joint_speed_share
 

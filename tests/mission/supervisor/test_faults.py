@@ -447,6 +447,25 @@ def test_uav_is_not_let_go_whose_rotors_would_need_all_they_have_for_what_the_ar
     assert find(bench, LONG, ["thrust_lost"], uav=BALANCE) == found
 
 
+@pytest.mark.parametrize("gust", [0.0, 1.0])
+def test_uav_that_hangs_on_the_arm_may_need_all_its_thrust_for_as_long_as_a_gust_lasts_and_no_longer(bench, gust):
+    """Negative control: where no wind is expected it is found at once, and so is one that flies."""
+    watch = bench.told["decide"]["watch"]
+    watch["gust"], bench.kept["act"]["hover"] = gust, watch["hover_max"][0] + 0.1
+    allowed = round(gust / watch["tick_s"][0])
+    assert find(bench, allowed + debounce(bench, "thrust_lost") - 1, ["thrust_lost"], uav=BALANCE) == "none"
+    # A lull gives back as much as it lasts.
+    bench.kept["act"]["hover"] -= 0.2
+    assert find(bench, 100, ["thrust_lost"], uav=BALANCE) == "none"
+    bench.kept["act"]["hover"] += 0.2
+    assert (
+        find(bench, min(100, allowed) + debounce(bench, "thrust_lost") + 1, ["thrust_lost"], uav=BALANCE)
+        == "thrust_lost"
+    )
+    bench.kept["act"]["trimmed"] = 1
+    assert find(bench, LONG, ["thrust_lost"], held=0, uav=AUTONOMOUS) == "thrust_lost"
+
+
 def freed_of_force(bench, share=1.0, drifts=0.0):
     """First fault found while the hinge is freed of force: 0.3 s on the rotors give only a share of what they are asked for, or the
     sensor drifts, N/s."""

@@ -71,6 +71,9 @@ FOLLOWED_M, SANK_M, TOUCHES_M = 0.06, 0.1, 0.01
 """Way that the arm has drawn back, and distance of the plate, from which on a plate that is light enough to follow sticks; way after
 which a UAV that still lies on the arm will not rise by itself."""
 
+GUSTS_S = 20.0
+"""How long, in wind, a UAV on the arm may need more thrust than it may hover with: that of four gusts of 44 m, at 9 m/s."""
+
 BLOCKED_M = 0.03
 """Distance of an arm in free motion from its reference which no healthy flight makes."""
 
@@ -98,6 +101,7 @@ def watch_layout() -> np.dtype:
             ("sinks", "f8"),  # m/s, with all the thrust
             ("plunges", "f8"),  # m/s, at which a UAV sinks whose rotors give too little
             ("hover_max", "f8"),  # N, command beyond which a UAV cannot hover safely
+            ("gust", "f8"),  # s, for which one that hangs on the arm may need more: gusts take it, and give it back
             ("joint_margin", "f8"),  # rad
             ("sigma_min", "f8"),
             ("speed_share", "f8"),
@@ -122,6 +126,10 @@ def seen_layout() -> np.dtype:
                 "f8",
             ),  # N, of late, the vertical hinge force and what the rotors give at least, while the hinge is freed of force
             ("rises", "i8"),  # 1 where that rises
+            (
+                "lacks",
+                "i8",
+            ),  # ticks by which the UAV that the hinge is freed from has longer needed more than it may than not
             ("rising", "i8"),  # ticks by which it has risen longer than not
         ]
     )
@@ -255,6 +263,8 @@ def _motion_signs(row: Record, b: Record, signs: np.ndarray) -> None:
     felt_short = row.uav == RAMP and row.link == CAUGHT and abs(kept.act.short) < b.told.act.uav.shortfall
     weighed = (row.uav == AUTONOMOUS and kept.act.trimmed > 0) or felt_short or row.uav == BALANCE
     short = needed(row.uav == BALANCE, known.weight, kept.act.hover, p.tick_s, e, seen) > p.hover_max and weighed
+    seen.lacks = max(seen.lacks + (1 if short else -1), 0) if row.uav == BALANCE else 0
+    short = short and (row.uav != BALANCE or seen.lacks * p.tick_s > p.gust)
     signs[THRUST_LOST] = sinks or (short and seen.rises == 0)
     signs[WRENCH_DRIFT] = signs[WRENCH_DRIFT] or (short and seen.rising * p.tick_s > DRIFTS_S)
     signs[ARM_BLOCKED] = signs[ARM_BLOCKED] or apart > BLOCKED_M**2
