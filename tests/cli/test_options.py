@@ -64,6 +64,7 @@ def test_recorded_wind_is_found_where_the_command_is_run(tmp_path, monkeypatch):
         ({"sea": "3", "hull": 2.0}, {"state": "ss3", "hull_m": 2.0}),
         ({"sea": "ss2"}, {"state": "ss2"}),
         ({"sea": "tank"}, {"state": "tank"}),
+        ({"sea": "usv"}, {"state": "usv"}),
         ({"sea": "0"}, {}),
         ({"sea_trace": Path("deck.csv")}, {"trace": str(Path("deck.csv").resolve())}),
     ],
@@ -75,7 +76,7 @@ def test_sea_is_that_of_the_options(given, sea):
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"sea": "7"}, "--sea '7': sea states are 0 \\(calm\\) to 4 or ss1 to ss4, or tank"),
+        ({"sea": "7"}, "--sea '7': sea states are 0 \\(calm\\) to 4 or ss1 to ss4, or tank and usv"),
         ({"hull": 4.5}, "hull_m has no effect on a calm sea"),
         ({"sea": "2", "sea_trace": Path("deck.csv")}, "leave out state = 'ss2'"),
     ],

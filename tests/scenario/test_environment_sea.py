@@ -17,6 +17,7 @@ def sea(**keys):
         ({}, False, False),
         ({"state": "ss1"}, True, True),
         ({"state": "tank"}, True, False),
+        ({"state": "usv"}, True, False),
         ({"height_m": 0.2, "period_s": 3.0}, True, True),
         ({"state": "ss4", "height_m": 1.5}, True, True),
         ({"trace": "deck.csv"}, True, False),

@@ -10,6 +10,7 @@ import typer
 
 from armland.errors import ConfigurationError
 from armland.scenario.deviation import Level
+from armland.scenario.environment import MEASURED
 from armland.scenario.tables import update
 
 
@@ -153,8 +154,9 @@ FLOWN = {
     ),
     "sea": option(
         str | None,
-        "Sea state 0 to 4, or tank: the deck moves as a hull in waves does; see docs/sea.md.",
-        metavar="0-4|tank",
+        "Sea state 0 to 4: the deck moves as a hull in waves does; tank, usv: as a platform and a small vessel that were measured; see "
+        "docs/sea.md.",
+        metavar="0-4|tank|usv",
     ),
     "hull": option(float | None, "Length in m of the hull that carries the arm, 4 if absent.", metavar="M"),
     "sea_trace": option(
@@ -225,10 +227,10 @@ def sea_settings(given: dict[str, Any]) -> dict[str, Any]:
     out: dict[str, Any] = {}
     if (state := given.get("sea")) is not None:
         numbered = {str(i): f"ss{i}" for i in range(1, 5)}
-        known = {"0": "calm", **numbered, **{name: name for name in ("calm", *numbered.values(), "tank")}}
+        known = {"0": "calm", **numbered, **{name: name for name in ("calm", *numbered.values(), *MEASURED)}}
         if state not in known:
             raise ConfigurationError(
-                f"--sea {state!r}: sea states are 0 (calm) to 4 or ss1 to ss4, or tank: a floating platform's own motion"
+                f"--sea {state!r}: sea states are 0 (calm) to 4 or ss1 to ss4, or tank and usv: decks that were measured"
             )
         out["state"] = known[state]
     if given.get("hull") is not None:

@@ -24,7 +24,10 @@ STATES: dict[str, tuple[float, float]] = {
 }
 """Significant wave height, m, and modal period, s: the most probable of STANAG 4194; of sea state 1 it gives no period: assumption."""
 
-State = Literal["calm", "ss1", "ss2", "ss3", "ss4", "tank"]
+State = Literal["calm", "ss1", "ss2", "ss3", "ss4", "tank", "usv"]
+
+MEASURED = ("tank", "usv")
+"""Decks that move by their own published statistics, not by waves."""
 
 
 def _gravity(value: of.Acceleration3) -> of.Acceleration3:
@@ -147,7 +150,9 @@ class Sea(Section):
     Angles of waves: towards where they travel, from the bow counter-clockwise; 180 is a head sea."""
 
     state: State = key(
-        "calm", "sea state, by its most probable height and period; `tank`: a floating platform's own statistics"
+        "calm",
+        "sea state, by its most probable height and period; `tank` and `usv`: a platform's and a small vessel's own"
+        " statistics",
     )
     height_m: Annotated[float, between(0.01, 15.0)] | None = key(
         None, "significant wave height in place of the state's"
@@ -179,7 +184,7 @@ class Sea(Section):
     @property
     def moves(self) -> bool:
         """Whether the deck moves at all."""
-        return self.waves or self.state == "tank" or self.trace is not None
+        return self.waves or self.state in MEASURED or self.trace is not None
 
     @property
     def waves(self) -> bool:

@@ -47,7 +47,7 @@ WIND_MPS, SEA, HULL_M, RUNS = 8.0, "3", 4.0, 40
     wind=options.option(
         float, "Mean wind in m/s at 20 ft, with its turbulence; see docs/air.md.", default=WIND_MPS, min=0.0
     ),
-    sea=options.option(str, "Sea state 0 to 4, or tank; see docs/sea.md.", default=SEA, metavar="0-4|tank"),
+    sea=options.option(str, "Sea state 0 to 4, tank or usv; see docs/sea.md.", default=SEA, metavar="0-4|tank|usv"),
     hull=options.option(float, "Length in m of the hull that carries the arm.", default=HULL_M, metavar="M"),
     deviation=options.DEVIATION,
     settings=options.SETTINGS,
@@ -93,7 +93,7 @@ def _campaign(asked: "Study", file: Path, given: dict[str, Any]) -> "Campaign":
     from armland.experiments.study.flights import campaign_of_study
 
     # Calm water needs no hull, and a scenario refuses what has no effect.
-    afloat = given["sea"] not in ("0", "calm", "tank")
+    afloat = given["sea"] not in ("0", "calm", *options.MEASURED)
     weather = {**given, "seed": None, "hull": given["hull"] if afloat else None}
     scenario = options.load_flown("landing", given["scenario"], weather)
     ready(joints_of(scenario))
@@ -147,5 +147,7 @@ def conditions(frozen: str, flights: int) -> str:
 
     s = Scenario.thawed(frozen)
     wind = f"wind {s.air.wind_mps:g} m/s" if s.air.blows else "calm air"
-    sea = {"calm": "on land", "tank": "deck tank"}.get(s.sea.state, f"{s.sea.state}, hull {s.sea.hull_m:g} m")
+    sea = {"calm": "on land", **{name: f"deck {name}" for name in options.MEASURED}}.get(
+        s.sea.state, f"{s.sea.state}, hull {s.sea.hull_m:g} m"
+    )
     return f"{wind}, {sea}, deviations {s.deviation.level}, {flights} seeds"

@@ -12,7 +12,7 @@ from armland.scenario import quantities as of
 from armland.scenario.quantities import Section, between, key
 from armland.scenario.refusal import problems
 
-SEAS = ("as in the scenario", "0", "1", "2", "3", "4", "tank")
+SEAS = ("as in the scenario", "0", "1", "2", "3", "4", "tank", "usv")
 
 OWN = "as in the mission"
 """Law: that which the mission or the scenario names."""

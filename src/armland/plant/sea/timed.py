@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from armland.plant.sea.measured import measured_motion
 from armland.plant.sea.motion import Motion
 from armland.plant.sea.recorded import recorded_motion
-from armland.plant.sea.tank import tank_motion
 from armland.plant.sea.waves import wave_motion
 from armland.rotations import Array
 from armland.scenario import Scenario
@@ -32,7 +32,7 @@ def deck_motion(scenario: Scenario) -> Motion:
     if sea.waves:
         return wave_motion(scenario)
     if sea.moves:
-        return tank_motion(scenario)
+        return measured_motion(scenario)
     return Motion(np.zeros(0), np.zeros((0, 6), complex), np.zeros(6), np.zeros(6))
 
 
