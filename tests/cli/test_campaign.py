@@ -38,7 +38,7 @@ stage = 20
 @pytest.fixture
 def study(tmp_path, monkeypatch):
     """A file of short flights that threads of this process make."""
-    monkeypatch.setattr(module, "_crew", lambda jobs, address: threads(jobs or 2))
+    monkeypatch.setattr(module, "crew_of", lambda jobs, address: threads(jobs or 2))
     (tmp_path / "study.toml").write_text(STUDY)
     return tmp_path
 

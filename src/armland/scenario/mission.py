@@ -55,7 +55,8 @@ class Bounds(Section):
     flown_error_m: of.Length = key(0.06, "distance to its station at which a UAV that was let go has taken off")
     flown_speed_mps: of.PositiveSpeed = key(0.15, "its speed there")
     spare_least: of.Fraction = key(
-        0.4, "thrust to spare before the arm comes in wind, over that where nothing blows; 0: it does not wait for it"
+        0.4,
+        "share of the thrust to spare where nothing blows that must be left before the arm comes in wind; 0: it does not wait for it",
     )
     align_offset_m: of.Length = key(0.004, "horizontal offset at which the arm closes")
     align_speed_mps: of.PositiveSpeed = key(0.06, "relative speed at which the arm closes")

@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 
-from armland.cli.options import load
-from armland.experiments.episode import attempt
 from armland.mission.belief import flyer
 from armland.mission.missions.takeoff import (
     CURRENT_GONE_S,
@@ -176,49 +174,6 @@ def test_uav_may_touch_the_cradle_up_to_the_lift_and_not_in_the_end():
         assert [n for n, p in phases.items() if p.on_cradle and not p.final] == before
         assert not phases["done"].on_cradle
         assert phases["refused"].on_cradle
-
-
-def asked(phases, name):
-    """Signals that the guards of a phase ask for, and how long its first one must hold, s."""
-    return {c.signal for g in phases[name].guards for c in g.conditions}, phases[name].guards[0].hold_s
-
-
-@pytest.mark.parametrize("settings", [{"air": {"wind_mps": 8.0}}, {"sea": {"state": "ss2"}}])
-def test_in_rough_weather_the_plate_is_pressed_flat_and_the_uav_let_go_in_a_lull_by_an_arm_that_draws_away(settings):
-    """In calm air the first contact counts, no thrust is waited for, and the arm leaves by a move."""
-    rough, calm = (
-        {p.name: p for p in TAKEOFF.phases(load_scenario("landing", made).believed())} for made in (settings, {})
-    )
-    assert calm == PLAIN
-    for phases, differs in ((rough, True), (calm, False)):
-        assert ("pull" in asked(phases, "touch")[0]) == differs
-        assert ("spare" in asked(phases, "hand_back")[0]) == differs
-        assert (phases["release"].uav == "station") == differs
-        assert (phases["clear"].arm == "flee") == differs
-        assert phases["done"].seeks == differs
-    assert asked(rough, "hand_back")[1] > asked(calm, "hand_back")[1]
-    here, way = "self_test", []
-    while not rough[here].final:
-        way.append(here)
-        here = rough[here].guards[0].target
-    assert (here, way[-2:]) == ("done", ["clear", "settle"])
-    assert way == [n for n, p in rough.items() if not p.final]
-
-
-def test_push_that_lays_the_plate_flat_is_less_than_the_uavs_weight_and_more_than_a_contact():
-    """Of any UAV: with more it would be lifted off its rails."""
-    for name in ({}, {"airframe": "crazyflie"}, {"airframe": "m690"}):
-        scenario = sized(load_scenario("landing", name)).believed()
-        push = -TAKEOFF.thresholds(scenario)["pressed_n"]
-        assert scenario.estimation.contact.contact_n.on <= push < flyer(scenario).weight
-
-
-@pytest.mark.slow
-def test_most_take_offs_at_sea_and_in_wind_end_with_the_uav_flying():
-    scenario = load("landing", {"deviation": "published", "sea": "ss2", "hull": 4.0, "wind": 8.0})
-    flown = [attempt(scenario, "takeoff", seed) for seed in range(140001, 140009)]
-    assert sum(result["success"] for result in flown) >= 7, [result["reason"] for result in flown]
-    assert max(result["hinge_force_max_n"] for result in flown) < 0.6 * scenario.magnet.rating_n
 
 
 def leaving(settings):

@@ -19,7 +19,7 @@ def test_page_has_every_command_with_its_options() -> None:
     for row in (
         "| `--seed N` |",
         "| `--set KEY=VALUE` |",
-        "| `--sea 0-4 or tank` |",
+        "| `--sea 0-4 or tank or usv` |",
         "| `--out FOLDER` |",
         "| `SCENARIO` |",
     ):

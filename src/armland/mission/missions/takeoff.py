@@ -5,10 +5,8 @@ With a speed that the UAV is given it is the same up to the hand-over; then come
 
 from typing import Any
 
-import numpy as np
-
 from armland.mission.missions.keys import GEAR, LAUNCH, ON_MAGNET, SHARED
-from armland.mission.missions.landing import ARRIVED, CARRIED, FLEES_S, HELD, LOOKS_S, READY, TESTED, WAITS_S
+from armland.mission.missions.landing import ARRIVED, CARRIED, HELD, READY, TESTED
 from armland.mission.reference.septic import SWELL
 from armland.mission.supervisor.ends import TAKEOFF_FINALS
 from armland.mission.table.mission import At, Criterion, Mission
@@ -29,15 +27,6 @@ A magnet keeps up to 2.7 times that at published deviations; the rest is pulled 
 
 QUICKEST = 0.5
 """Share of its usual time in which the arm leaves, at least."""
-
-LULL, HUNG, LULL_S = 0.55, 0.1, 0.5
-"""In wind and above a deck that moves: thrust that the rotors must have to spare before the UAV is let go, over what they have where
-nothing blows; share of its weight that may hang on the arm meanwhile, which a gust that begins makes more; and for how long. It
-hangs safely on the arm, and sinks onto it where a gust takes the rest."""
-
-PRESSED, MOST_PRESSED, PRESSES_S = 3.0, 0.7, 0.01
-"""Push on the plate over that of a contact, at most over the UAV's weight, at which one that hangs aslant lies flat on the magnet, and
-how long it must last."""
 
 STANDING: dict[str, Any] = {"kind": "ground", "uav": "off", "free": True, "on_cradle": True, "on_timeout": "refused"}
 """The UAV stands on the cradle, nothing touches it yet."""
@@ -96,33 +85,6 @@ PHASES = (
 )
 
 
-_BY_NAME = {p.name: p for p in PHASES}
-
-ROUGH = {
-    # Above a deck that leans the plate hangs aslant over the magnet: one edge meets first, and pressed on it lies flat.
-    "touch": _BY_NAME["touch"]
-    ._replace(guards=())
-    .to("grip", "contact > half, progress > half, gap < let_go_m, pull < pressed_n", PRESSES_S),
-    # On the arm it is safe for as long as a gust lasts that takes all its thrust; let go then it would sink onto the arm.
-    "hand_back": HAND_BACK._replace(timeout_s=LOOKS_S).to(
-        "release", f"hinge_force < force_balanced_n, {LEVEL}, spare > spare_least, arm_share < share_hung", LULL_S
-    ),
-    # It answers gusts from the first moment on, and is free as soon as the current is gone.
-    "release": _BY_NAME["release"]._replace(uav="station", guards=()).to("clear", "elapsed > current_gone_s"),
-    # It leans, and gusts push it aside before it has risen: the arm goes along with it and down.
-    "clear": _BY_NAME["clear"]
-    ._replace(arm="flee", duration_s=FLEES_S, load="impact", guards=())
-    .to("settle", "progress > almost_one"),
-    "done": _BY_NAME["done"]._replace(seeks=True),
-}
-"""What is done differently in wind and above a deck that moves."""
-
-SETTLE = Phase("settle", arm="move", uav="station", seeks=True, duration_s=WAITS_S, timeout_s=LOOKS_S).to(
-    "done", "progress > almost_one, uav_seen > half, uav_error < flown_error_m, uav_speed < flown_speed_mps", 0.5
-)
-"""The arm waits for the UAV that it has let go and drawn away from: close by, it leant out of the camera's view."""
-
-
 def gives_speed(scenario: Scenario) -> bool:
     """Whether the scenario's take-off is the one with a run-up."""
     return scenario.place.fly_on or any(scenario.place.takeoff_velocity_mps)
@@ -157,19 +119,7 @@ def launch_phases(fly_on: bool) -> tuple[Phase, ...]:
 def _phases(scenario: Scenario) -> tuple[Phase, ...]:
     if gives_speed(scenario):
         return launch_phases(scenario.place.fly_on)
-    if scenario.forecast.wind_mps or scenario.forecast.deck_moves:
-        rough = [ROUGH.get(p.name, p) for p in PHASES]
-        last = [p.name for p in rough].index("clear")
-        return (*rough[: last + 1], SETTLE, *rough[last + 1 :])
     return tuple(p._replace(duration_s=leaving_s(scenario, p)) if p.name == "clear" else p for p in PHASES)
-
-
-def pressing_n(scenario: Scenario) -> float:
-    """Push, N, at which a plate that hangs aslant lies flat; a UAV that stands on its rails is not lifted off them."""
-    mass = uav_parameters(scenario).mass + plate_mass(scenario)
-    weight = mass * float(np.linalg.norm(scenario.environment.gravity_mps2))
-    felt = scenario.estimation.contact.contact_n.on
-    return float(max(felt, min(PRESSED * felt, MOST_PRESSED * weight)))
 
 
 def leaving_s(scenario: Scenario, clear: Phase) -> float:
@@ -195,7 +145,6 @@ TARGETS = {
     "lift": At("put_down_m", 1.0, "above_m"),
     "carry_up": At("catch_m"),
     "clear": At("catch_m", -1.0, "wait_below_m"),
-    "settle": At("catch_m", -1.0, "wait_below_m"),
 }
 
 MOVES = {
@@ -215,9 +164,6 @@ TAKEOFF = Mission(
     targets=TARGETS,
     moves=MOVES,
     thresholds=lambda s: {
-        "spare_least": LULL,
-        "share_hung": HUNG,
-        "pressed_n": -pressing_n(s),
         "current_gone_s": CURRENT_GONE_S,
         "flown_s": FLOWN_S,
         "force_felt_n": s.estimation.contact.contact_n.on,
@@ -234,7 +180,6 @@ TAKEOFF = Mission(
         "hand_back": "the hinge did not come free of force, or the camera does not see the marker",
         "launch": "the hinge did not come free of force at speed",
         "leave": "the arm did not get out of the UAV's path: look for what is in its way",
-        "settle": "the UAV did not come to its station: check that it obeys and has room",
         "clear": "the UAV did not come to its station: check that it obeys and has room",
     },
     criteria=(
@@ -247,7 +192,6 @@ TAKEOFF = Mission(
     praise="flies",
     doc="""The arm reaches below the UAV on its cradle, touches the plate and grips it; the rotors spin up to their share of the
 weight, and the arm lifts the UAV and carries it to its station. There the thrust rises until the hinge is free of force, and the
-magnet opens. In wind and above a deck that moves it waits for thrust to spare before, and the arm draws away along with the UAV.
-With `place.takeoff_velocity_mps` the arm runs up to that velocity through `place.launch_m`, lets go in motion and
+magnet opens. With `place.takeoff_velocity_mps` the arm runs up to that velocity through `place.launch_m`, lets go in motion and
 dives out of the UAV's way; with `place.fly_on` the UAV keeps the speed with all its thrust, and may weigh more than can hover.""",
 )

@@ -17,8 +17,8 @@ SEARCHES = 40
 LEANS = np.deg2rad(np.arange(0.0, 90.0, 0.25))
 """Leans that are tried against a gust, rad."""
 
-STRONGEST_MPS = 60.0
-"""W₂₀ that is looked at at most."""
+STRONGEST_MPS = 40.0
+"""W₂₀ that is looked at at most: the strongest that a scenario may foretell."""
 
 
 def steady_wind(scenario: Scenario, height: float, timed: Array) -> Array:
@@ -163,9 +163,10 @@ def told_gusts(scenario: Scenario, mass: float) -> str:
         scenario: as it flies, with the wind that its user foretells.
         mass: kg, of all that flies.
     """
-    w20, often, seldom = scenario.foretold_mps, *(holds_height_in(scenario, mass, k) for k in (1.0, 2.0))
-    if w20 <= seldom:
+    w20 = scenario.foretold_mps
+    if w20 <= 0.0 or left_in_gust(scenario, mass, w20, 2.0) >= 0.0:
         return ""
+    often, seldom = (holds_height_in(scenario, mass, k) for k in (1.0, 2.0))
     return (
         f"in {w20:g} m/s at 20 ft gusts take this UAV down with all its thrust: it holds its height in those of two standard "
         f"deviations up to {seldom:.1f} m/s, of one up to {often:.1f} m/s"
