@@ -24,9 +24,9 @@ Comparison = dict[str, Any]
 
 
 def short(conditions: str) -> str:
-    """Wind and sea without the number of flights: "8 m/s, ss2"."""
+    """Wind and sea without the number of flights: "8 m/s, sea state 2"."""
     words = [w for w in conditions.split(", ") if "flights" not in w and "hull" not in w]
-    return ", ".join(words).replace("wind ", "").replace("calm air, on land", "calm, land")
+    return ", ".join(words).replace("wind ", "").replace(" at 20 ft", "").replace("calm air, on land", "calm, land")
 
 
 def markdown(found: list[Comparison]) -> str:
@@ -52,7 +52,7 @@ def page(found: list[Comparison]) -> Figure:
         _rates(axes, found, key)
         axes.set_title(words)
     panels[0].set_ylabel("flights (%)")
-    panels[0].legend(loc="lower left", fontsize=7)
+    panels[1].legend(loc="lower left", fontsize=7)
     return figure
 
 

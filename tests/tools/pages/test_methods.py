@@ -16,19 +16,19 @@ def comparison(conditions, rates):
 
 FOUND = [
     comparison("calm air, on land, 40 flights of each", {"arm": (39, 40), "tether": (32, 40)}),
-    comparison("wind 8 m/s, ss2, hull 4 m, 40 flights of each", {"arm": (38, 39), "tether": (20, 35)}),
+    comparison("wind 8 m/s at 20 ft, sea state 2, hull 4 m, 40 flights of each", {"arm": (38, 39), "tether": (20, 35)}),
 ]
 
 
 def test_conditions_are_said_shortly():
-    assert [short(c["conditions"]) for c in FOUND] == ["calm, land", "8 m/s, ss2"]
+    assert [short(c["conditions"]) for c in FOUND] == ["calm, land", "8 m/s, sea state 2"]
 
 
 def test_table_has_a_row_for_each_weather():
     head, _, calm, windy = markdown(FOUND).splitlines()
     assert head == "| wind at 20 ft, sea, flights | arm | tether |"
     assert calm == "| calm, land, 40 | 98 [88, 100]; 40 stand | 80 [70, 90]; 40 stand |"
-    assert windy.startswith("| 8 m/s, ss2, 40 | 95 [85, 100]; 39 stand | 50 [40, 60]; 35 stand |")
+    assert windy.startswith("| 8 m/s, sea state 2, 40 | 95 [85, 100]; 39 stand | 50 [40, 60]; 35 stand |")
 
 
 def test_figure_has_a_line_for_each_method_at_its_rates():
