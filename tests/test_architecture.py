@@ -186,7 +186,7 @@ def test_half_of_the_modules_are_very_short() -> None:
     )
 
 
-@pytest.mark.xfail(strict=True, reason="54,300 lines; docstrings with shapes, units and frames are a third of them")
+@pytest.mark.xfail(strict=True, reason="55,400 lines; docstrings with shapes, units and frames are a third of them")
 def test_package_is_small() -> None:
     assert sum(lengths().values()) <= MAX_PACKAGE
 
